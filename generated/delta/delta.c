@@ -144,9 +144,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -208,6 +208,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -256,7 +280,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -266,7 +290,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -279,7 +303,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -296,16 +320,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -313,7 +337,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1199,183 +1232,24 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real rus_S_x, rus_S_y, rus_S_z, rus_Kd_1, rus_Kc_1, rus_Ks_1, rus_rho2_1, rus_disc_1, rus_root_1,
-        inv_rus_rho2_1, rus_c_1, rus_s_1, rus_xi_1_t, rus_x_2_in_axes1_x, rus_rho2_2, rus_root_2,
-        inv_rus_rho2_2, rus_c_2, rus_s_2_t, rus_c_3, rus_e_1_in_axes3_x, rus_r_1_t,
-        rus_r_1_in_axes1_z, rus_r_1_t_2, rus_r_1_in_axes1_x, rus_r_1_in_axes3_z, rus_v_1_t_2,
-        rus_v_1_in_axes3_y, rus_v_1_in_axes3_z, inv_rus_v_1_t_2, rus_w_2_in_axes3_z, rus_qd_1_t,
-        rus_qd_1_t_2, rus_qd_1_t_5, rus_qd_1_t_6, rus_bias_t, rus_d_2_in_axes3_z, axis_z_rus_axes3_x,
-        axis_z_rus_axes3_y, axis_z_rus_axes3_z, axis_y_rus_axes3_x, axis_y_rus_axes3_y,
-        axis_y_rus_axes3_z, rus_v_1_t, rus_w_1_t_7, rus_w_1_t_8, rus_w_1_t_9, rus_J_3_t_10,
-        rus_J_3_t_11, rus_J_3_t_15, rus_J_3_t_17, rus_d_alpha_3_in_axes3_xz, rus_d_alpha_3_t,
-        rus_d_Gamma_2_in_axes3_z, rus_d_c_in_axes3_xx, rus_d_c_in_axes3_xy, rus_d_c_in_axes3_xz,
-        rus_d_c_in_axes3_yz, axis_x_rus_axes3_x, axis_x_rus_axes3_y, axis_x_rus_axes3_z,
-        rus_acc_3_in_axes3_x, rus_acc_3_in_axes3_y, rus_acc_3_in_axes3_z, rus_c_in_axes3_x,
-        rus_c_in_axes3_y, rus_c_in_axes3_z;
+    real rus_J_3_t_10, rus_J_3_t_11, rus_J_3_t_15, rus_J_3_t_17, rus_e_1_in_axes3_x, rus_c_1, rus_s_1,
+        rus_c_2, rus_s_2_t, rus_r_1_t, rus_v_1_t_2, rus_v_1_in_axes3_y, rus_v_1_in_axes3_z,
+        axis_z_rus_axes3_x, axis_z_rus_axes3_y, axis_z_rus_axes3_z, axis_y_rus_axes3_x,
+        axis_y_rus_axes3_y, axis_y_rus_axes3_z, axis_x_rus_axes3_x, axis_x_rus_axes3_y,
+        axis_x_rus_axes3_z, inv_rus_v_1_t_2, rus_w_1_t_7, rus_w_1_t_8, rus_w_1_t_9,
+        rus_w_2_in_axes3_z, rus_bias_t, rus_d_2_in_axes3_z, rus_g_in_axes3_x, rus_g_in_axes3_y,
+        rus_g_in_axes3_z, rus_d_Gamma_2_t_2, rus_g_in_axes1_x, rus_g_in_axes1_y, rus_mu_1_t_3,
+        rus_S_ddot_in_axes3_x, rus_S_ddot_in_axes3_y, rus_S_ddot_in_axes3_z, rus_qd_1_t, rus_qd_2,
+        rus_qd_3, rus_W_3_in_axes3_yz, rus_W_3_in_axes3_xz, rus_W_3_in_axes3_xy, rus_bias_in_axes3_x,
+        rus_bias_in_axes3_y, rus_bias_in_axes3_z, rus_mu_3_t_4, rus_mu_3_t_5, rus_mu_3_t_6, rus_c_t,
+        rus_c_t_2, rus_c_t_3, rus_qdd_1_t, rus_qdd_2, rus_qdd_3_t, rus_Q_xx, rus_Q_xy, rus_Q_xz,
+        rus_Q_yy, rus_Q_yz, rus_Q_zz, rus_U_x, rus_U_y, rus_U_z, rus_acc_3_in_axes3_x,
+        rus_acc_3_in_axes3_y, rus_acc_3_in_axes3_z, rus_c_in_axes3_x, rus_c_in_axes3_y,
+        rus_c_in_axes3_z;
 } values_rus;
 
 INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_rus
     *v)
-{
-    /* (rus-S) from the base point to the connection point */
-    const real t_x = X[0*w + j];
-    const real rus_S_x = m->rus_platform_point_x[i] + t_x - m->rus_base_point_x[i];
-    const real t_y = X[1*w + j];
-    const real rus_S_y = m->rus_platform_point_y[i] + t_y - m->rus_base_point_y[i];
-    const real t_z = X[2*w + j];
-    const real rus_S_z = m->rus_platform_point_z[i] + t_z - m->rus_base_point_z[i];
-    /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 1 */
-    const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-    const real rus_Kd_1 = m->rus_J_3_t[i] - m->rus_J_3_t_2[i] + R(0.5)*rus_Kd_1_t;
-    /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rus_Kc_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xx[i] +
-        rus_S_y*m->rus_base_frame_yx[i] + rus_S_z*m->rus_base_frame_zx[i]);
-    /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rus_Ks_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xy[i] +
-        rus_S_y*m->rus_base_frame_yy[i] + rus_S_z*m->rus_base_frame_zy[i]);
-    /* (rus-rho2_1) squared amplitude */
-    const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-    /* (rus-disc_1) discriminant */
-    const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-    /* (rus-root_1) root, with the sign of the branch */
-    const real rus_root_1 = m->rus_branch_1[i]*root(rus_disc_1);
-    /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rus_rho2_1 = 1/rus_rho2_1;
-    const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-    /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rus_s_1 = inv_rus_rho2_1*(rus_Kd_1*rus_Ks_1 + rus_Kc_1*rus_root_1);
-    /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-    const real rus_xi_1_t = m->inv_rus_size_t[i]*m->rus_joint2_offset_x[i]*rus_root_1;
-    /* (rus-x_2) from the origin of joint 2 to the connection point */
-    const real rus_x_2_in_axes1_x = m->inv_rus_size_t[i]*rus_Kd_1*m->rus_joint2_offset_x[i] -
-        m->rus_joint2_offset_x[i];
-    /* (rus-rho2_2) squared amplitude */
-    const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-    /* (rus-root_2) root, with the sign of the branch */
-    const real rus_root_2 = m->rus_branch_2[i]*root(rus_rho2_2);
-    /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_rus_rho2_2 = 1/rus_rho2_2;
-    const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-    /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-    /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-    const real rus_c_3 = m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*rus_root_2;
-    /* (rus-r_1) from joint 1 to the connection point, along the links */
-    const real rus_e_1_in_axes3_x =
-        m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*(rus_S_x*m->rus_base_frame_xz[i]
-        + rus_S_y*m->rus_base_frame_yz[i] + rus_S_z*m->rus_base_frame_zz[i]);
-    const real rus_r_1_t = rus_c_3*m->rus_platform_joint_offset_x[i];
-    const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*m->rus_platform_joint_offset_x[i];
-    const real rus_r_1_t_2 = rus_r_1_t*rus_s_2_t;
-    const real rus_r_1_in_axes1_x = m->rus_joint2_offset_x[i] + rus_c_2*rus_r_1_t;
-    const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2;
-    /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-    const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
-    const real rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z;
-    const real rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-    const real rus_v_1_in_axes3_z = rus_c_3*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z +
-        rus_c_3*rus_v_1_t) + rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t -
-        rus_c_3*rus_r_1_in_axes1_z);
-    /* (rus-w_1) reciprocal vector 1 */
-    const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-    /* (rus-w_2) reciprocal vector 2 */
-    const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
-    /* (rus-qd_1) rate of joint 1 */
-    const real rus_qd_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1;
-    const real rus_qd_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t;
-    const real rus_qd_1_t_3 = rus_c_2*rus_e_1_in_axes3_x;
-    const real rus_qd_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t;
-    const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
-    const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
-    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    const real rus_bias_t = rus_c_2*m->rus_joint2_offset_x[i];
-    const real rus_d_2_in_axes3_z = m->rus_joint2_offset_x[i]*rus_s_2_t;
-    /* (rus-w_1) */
-    const real rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1;
-    const real rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t;
-    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t +
-        m->rus_base_frame_xy[i]*rus_w_1_t_2;
-    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t +
-        m->rus_base_frame_yy[i]*rus_w_1_t_2;
-    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t +
-        m->rus_base_frame_zy[i]*rus_w_1_t_2;
-    const real rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x;
-    const real rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t;
-    const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
-    const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 -
-        m->rus_base_frame_xz[i]*rus_c_3 + m->rus_base_frame_xy[i]*rus_w_1_t_6;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 -
-        m->rus_base_frame_yz[i]*rus_c_3 + m->rus_base_frame_yy[i]*rus_w_1_t_6;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 -
-        m->rus_base_frame_zz[i]*rus_c_3 + m->rus_base_frame_zy[i]*rus_w_1_t_6;
-    v->rus_S_x = rus_S_x;
-    v->rus_S_y = rus_S_y;
-    v->rus_S_z = rus_S_z;
-    v->rus_Kd_1 = rus_Kd_1;
-    v->rus_Kc_1 = rus_Kc_1;
-    v->rus_Ks_1 = rus_Ks_1;
-    v->rus_rho2_1 = rus_rho2_1;
-    v->rus_disc_1 = rus_disc_1;
-    v->rus_root_1 = rus_root_1;
-    v->inv_rus_rho2_1 = inv_rus_rho2_1;
-    v->rus_c_1 = rus_c_1;
-    v->rus_s_1 = rus_s_1;
-    v->rus_xi_1_t = rus_xi_1_t;
-    v->rus_x_2_in_axes1_x = rus_x_2_in_axes1_x;
-    v->rus_rho2_2 = rus_rho2_2;
-    v->rus_root_2 = rus_root_2;
-    v->inv_rus_rho2_2 = inv_rus_rho2_2;
-    v->rus_c_2 = rus_c_2;
-    v->rus_s_2_t = rus_s_2_t;
-    v->rus_c_3 = rus_c_3;
-    v->rus_e_1_in_axes3_x = rus_e_1_in_axes3_x;
-    v->rus_r_1_t = rus_r_1_t;
-    v->rus_r_1_in_axes1_z = rus_r_1_in_axes1_z;
-    v->rus_r_1_t_2 = rus_r_1_t_2;
-    v->rus_r_1_in_axes1_x = rus_r_1_in_axes1_x;
-    v->rus_r_1_in_axes3_z = rus_r_1_in_axes3_z;
-    v->rus_v_1_t_2 = rus_v_1_t_2;
-    v->rus_v_1_in_axes3_y = rus_v_1_in_axes3_y;
-    v->rus_v_1_in_axes3_z = rus_v_1_in_axes3_z;
-    v->inv_rus_v_1_t_2 = inv_rus_v_1_t_2;
-    v->rus_w_2_in_axes3_z = rus_w_2_in_axes3_z;
-    v->rus_qd_1_t = rus_qd_1_t;
-    v->rus_qd_1_t_2 = rus_qd_1_t_2;
-    v->rus_qd_1_t_5 = rus_qd_1_t_5;
-    v->rus_qd_1_t_6 = rus_qd_1_t_6;
-    v->rus_bias_t = rus_bias_t;
-    v->rus_d_2_in_axes3_z = rus_d_2_in_axes3_z;
-    v->axis_z_rus_axes3_x = axis_z_rus_axes3_x;
-    v->axis_z_rus_axes3_y = axis_z_rus_axes3_y;
-    v->axis_z_rus_axes3_z = axis_z_rus_axes3_z;
-    v->axis_y_rus_axes3_x = axis_y_rus_axes3_x;
-    v->axis_y_rus_axes3_y = axis_y_rus_axes3_y;
-    v->axis_y_rus_axes3_z = axis_y_rus_axes3_z;
-}
-
-INLINE void stage_rus_H_condition(values_rus *v)
-{
-    /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-    const real rus_v_1_t = v->rus_c_3*(v->rus_r_1_in_axes1_x*v->rus_s_2_t -
-        v->rus_c_2*v->rus_r_1_t*v->rus_s_2_t);
-    /* (rus-w_1) reciprocal vector 1 */
-    const real inv_rus_v_1_t = 1/rus_v_1_t;
-    const real rus_w_1_t_7 = inv_rus_v_1_t*(v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_z -
-        v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_y);
-    const real rus_w_1_t_8 = inv_rus_v_1_t*(v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_x -
-        v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_z);
-    const real rus_w_1_t_9 = inv_rus_v_1_t*(v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_y -
-        v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_x);
-    v->rus_v_1_t = rus_v_1_t;
-    v->rus_w_1_t_7 = rus_w_1_t_7;
-    v->rus_w_1_t_8 = rus_w_1_t_8;
-    v->rus_w_1_t_9 = rus_w_1_t_9;
-}
-
-INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *X,
-    values_rus *v)
 {
     /* (rus-J_3) inertia tensor of link 3 about the connection point */
     const real t_x = X[0*w + j];
@@ -1391,245 +1265,386 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
         rus_J_3_t_4*m->rus_base_frame_yx[i] + rus_J_3_t_5*m->rus_base_frame_zx[i]);
     const real rus_J_3_t_9 = m->rus_joint2_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xy[i] +
         rus_J_3_t_4*m->rus_base_frame_yy[i] + rus_J_3_t_5*m->rus_base_frame_zy[i]);
-    const real rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9;
-    const real rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7;
-    const real rus_J_3_t_12 = root(rus_J_3_t_11)*m->rus_branch_1[i];
+    v->rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9;
+    v->rus_J_3_t_11 = v->rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7;
+    const real rus_J_3_t_12 = root(v->rus_J_3_t_11)*m->rus_branch_1[i];
     const real rus_J_3_t_13 = m->inv_rus_size_t[i]*rus_J_3_t_12*m->rus_joint2_offset_x[i];
     const real rus_J_3_t_14 = m->inv_rus_size_t[i]*rus_J_3_t_7*m->rus_joint2_offset_x[i] -
         m->rus_joint2_offset_x[i];
-    const real rus_J_3_t_15 = rus_J_3_t_14*rus_J_3_t_14 + rus_J_3_t_13*rus_J_3_t_13;
-    const real rus_J_3_t_16 = root(rus_J_3_t_15)*m->rus_branch_2[i];
-    const real rus_J_3_t_17 =
-        m->inv_rus_size_t_2[i]*rus_J_3_t_16*m->rus_platform_joint_offset_x[i];
-    const real rus_e_1_in_axes3_x =
+    v->rus_J_3_t_15 = rus_J_3_t_14*rus_J_3_t_14 + rus_J_3_t_13*rus_J_3_t_13;
+    const real rus_J_3_t_16 = root(v->rus_J_3_t_15)*m->rus_branch_2[i];
+    v->rus_J_3_t_17 = m->inv_rus_size_t_2[i]*rus_J_3_t_16*m->rus_platform_joint_offset_x[i];
+    v->rus_e_1_in_axes3_x =
         m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xz[i]
         + rus_J_3_t_4*m->rus_base_frame_yz[i] + rus_J_3_t_5*m->rus_base_frame_zz[i]);
-    const real rus_J_3_in_axes2_yz = m->rus_J_3_in_spec3_xy[i]*rus_e_1_in_axes3_x +
-        m->rus_J_3_in_spec3_yz[i]*rus_J_3_t_17;
-    const real rus_J_3_in_axes1_zz =
-        rus_J_3_t_17*(m->rus_J_3_in_spec3_xz[i]*rus_e_1_in_axes3_x +
-        m->rus_J_3_in_spec3_zz[i]*rus_J_3_t_17) -
-        rus_e_1_in_axes3_x*(-m->rus_J_3_in_spec3_xx[i]*rus_e_1_in_axes3_x -
-        m->rus_J_3_in_spec3_xz[i]*rus_J_3_t_17);
     /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rus_J_3_t_10 = 1/rus_J_3_t_10;
-    const real rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 -
-        rus_J_3_t_12*rus_J_3_t_9);
+    const real inv_rus_J_3_t_10 = 1/v->rus_J_3_t_10;
+    v->rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9);
     /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_9 +
-        rus_J_3_t_12*rus_J_3_t_8);
+    v->rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_9 + rus_J_3_t_12*rus_J_3_t_8);
     /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_rus_J_3_t_15 = 1/rus_J_3_t_15;
-    const real rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16;
+    const real inv_rus_J_3_t_15 = 1/v->rus_J_3_t_15;
+    v->rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16;
     /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16;
+    v->rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16;
     /* (rus-r_1) from joint 1 to the connection point, along the links */
-    const real rus_r_1_t = rus_J_3_t_17*m->rus_platform_joint_offset_x[i];
-    const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*m->rus_platform_joint_offset_x[i];
-    const real rus_r_1_t_2 = rus_r_1_t*rus_s_2_t;
-    const real rus_r_1_in_axes1_x = m->rus_joint2_offset_x[i] + rus_c_2*rus_r_1_t;
-    const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2;
+    v->rus_r_1_t = v->rus_J_3_t_17*m->rus_platform_joint_offset_x[i];
+    const real rus_r_1_in_axes1_z = v->rus_e_1_in_axes3_x*m->rus_platform_joint_offset_x[i];
+    const real rus_r_1_t_2 = v->rus_r_1_t*v->rus_s_2_t;
+    const real rus_r_1_in_axes1_x = m->rus_joint2_offset_x[i] + v->rus_c_2*v->rus_r_1_t;
+    const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*v->rus_s_2_t - v->rus_c_2*rus_r_1_t_2;
     /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-    const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
-    const real rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z;
-    const real rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-    const real rus_v_1_in_axes3_z = rus_J_3_t_17*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z +
-        rus_J_3_t_17*rus_v_1_t) + rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t -
-        rus_J_3_t_17*rus_r_1_in_axes1_z);
+    const real rus_v_1_t = v->rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*v->rus_s_2_t;
+    v->rus_v_1_t_2 = v->rus_J_3_t_17*rus_r_1_in_axes3_z;
+    v->rus_v_1_in_axes3_y = -v->rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
+    v->rus_v_1_in_axes3_z = v->rus_J_3_t_17*(v->rus_e_1_in_axes3_x*rus_r_1_in_axes1_z +
+        v->rus_J_3_t_17*rus_v_1_t) + v->rus_e_1_in_axes3_x*(v->rus_e_1_in_axes3_x*rus_v_1_t -
+        v->rus_J_3_t_17*rus_r_1_in_axes1_z);
     /* (rus-w_1) reciprocal vector 1 */
-    const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+    const real rus_w_1_t = v->rus_c_1*v->rus_s_2_t - v->rus_c_2*v->rus_s_1;
+    const real rus_w_1_t_2 = v->rus_c_1*v->rus_c_2 + v->rus_s_1*v->rus_s_2_t;
+    v->axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t +
+        m->rus_base_frame_xy[i]*rus_w_1_t_2;
+    v->axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t +
+        m->rus_base_frame_yy[i]*rus_w_1_t_2;
+    v->axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t +
+        m->rus_base_frame_zy[i]*rus_w_1_t_2;
+    const real rus_w_1_t_3 = v->rus_c_2*v->rus_e_1_in_axes3_x;
+    const real rus_w_1_t_4 = v->rus_e_1_in_axes3_x*v->rus_s_2_t;
+    const real rus_w_1_t_5 = v->rus_c_1*rus_w_1_t_3 + v->rus_s_1*rus_w_1_t_4;
+    const real rus_w_1_t_6 = v->rus_s_1*rus_w_1_t_3 - v->rus_c_1*rus_w_1_t_4;
+    v->axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 -
+        v->rus_J_3_t_17*m->rus_base_frame_xz[i] + m->rus_base_frame_xy[i]*rus_w_1_t_6;
+    v->axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 -
+        v->rus_J_3_t_17*m->rus_base_frame_yz[i] + m->rus_base_frame_yy[i]*rus_w_1_t_6;
+    v->axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 -
+        v->rus_J_3_t_17*m->rus_base_frame_zz[i] + m->rus_base_frame_zy[i]*rus_w_1_t_6;
+    v->axis_x_rus_axes3_x = v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_z -
+        v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_y;
+    v->axis_x_rus_axes3_y = v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_x -
+        v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_z;
+    v->axis_x_rus_axes3_z = v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_y -
+        v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_x;
+    v->inv_rus_v_1_t_2 = 1/v->rus_v_1_t_2;
+    v->rus_w_1_t_7 = v->axis_x_rus_axes3_x*v->inv_rus_v_1_t_2;
+    v->rus_w_1_t_8 = v->axis_x_rus_axes3_y*v->inv_rus_v_1_t_2;
+    v->rus_w_1_t_9 = v->axis_x_rus_axes3_z*v->inv_rus_v_1_t_2;
     /* (rus-w_2) reciprocal vector 2 */
-    const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
-    const real rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z;
-    /* (rus-w_3) reciprocal vector 3 */
-    const real rus_w_3_in_axes3_x =
-        inv_rus_v_1_t_2*rus_v_1_in_axes3_y*m->rus_w_3_in_axes3_y[i];
-    /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-    const real rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z;
-    const real rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z;
-    /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-       inertia and weight */
-    const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z;
-    const real rus_d_Gamma_3_in_axes3_x = m->rus_h_3_in_spec3_z[i] -
-        inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz - m->rus_d_Gamma_3_t[i]*rus_v_1_in_axes3_y -
-        rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z);
+    v->rus_w_2_in_axes3_z = 1/v->rus_r_1_t;
+    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+    v->rus_bias_t = v->rus_c_2*m->rus_joint2_offset_x[i];
+    v->rus_d_2_in_axes3_z = m->rus_joint2_offset_x[i]*v->rus_s_2_t;
+    /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
+    v->rus_g_in_axes3_x = v->axis_x_rus_axes3_x*m->gravity_x +
+        v->axis_x_rus_axes3_y*m->gravity_y + v->axis_x_rus_axes3_z*m->gravity_z;
+    v->rus_g_in_axes3_y = v->axis_y_rus_axes3_x*m->gravity_x +
+        v->axis_y_rus_axes3_y*m->gravity_y + v->axis_y_rus_axes3_z*m->gravity_z;
+    v->rus_g_in_axes3_z = v->axis_z_rus_axes3_x*m->gravity_x +
+        v->axis_z_rus_axes3_y*m->gravity_y + v->axis_z_rus_axes3_z*m->gravity_z;
     /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real rus_d_Gamma_2_t = rus_J_3_t_17*m->rus_h_3_in_spec3_y[i];
-    const real rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z;
-    const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_yz*m->rus_w_3_in_axes3_y[i];
-    const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
-    const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_y;
-    const real rus_d_Gamma_2_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 -
-        rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_4) - rus_d_Gamma_2_t;
-    const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 -
-        rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_y[i];
-    const real rus_d_Gamma_2_in_axes3_z = rus_J_3_t_17*m->rus_h_3_in_spec3_x[i] -
-        rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i] + rus_d_Gamma_2_t_2;
-    /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
-    const real rus_d_Gamma_1_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 -
-        m->rus_J_1_in_spec1_zz[i] - rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_4) -
-        rus_d_Gamma_2_t;
-    /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x -
-        rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
-        rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
-        m->rus_h_3_in_spec3_z[i]*rus_w_3_in_axes3_x -
-        m->rus_h_3_in_spec3_y[i]*(inv_rus_v_1_t_2*rus_J_3_t_17 -
-        rus_J_3_t_17*rus_w_2_in_axes3_x);
-    const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
-        m->rus_d_phi_3_in_axes3_xy[i] - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x -
-        m->rus_d_Gamma_3_in_axes3_y[i]*rus_w_3_in_axes3_x;
-    const real rus_d_c_in_axes3_xz = rus_d_alpha_3_t*m->rus_h_3_in_spec3_y[i] +
-        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x
-        - rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x;
-    const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_y[i] -
-        rus_d_Gamma_3_in_axes3_z*m->rus_w_3_in_axes3_y[i];
-    v->rus_J_3_t_10 = rus_J_3_t_10;
-    v->rus_J_3_t_11 = rus_J_3_t_11;
-    v->rus_J_3_t_15 = rus_J_3_t_15;
-    v->rus_J_3_t_17 = rus_J_3_t_17;
-    v->rus_e_1_in_axes3_x = rus_e_1_in_axes3_x;
-    v->rus_c_1 = rus_c_1;
-    v->rus_s_1 = rus_s_1;
-    v->rus_c_2 = rus_c_2;
-    v->rus_s_2_t = rus_s_2_t;
-    v->rus_r_1_t = rus_r_1_t;
-    v->rus_v_1_t_2 = rus_v_1_t_2;
-    v->rus_v_1_in_axes3_y = rus_v_1_in_axes3_y;
-    v->rus_v_1_in_axes3_z = rus_v_1_in_axes3_z;
-    v->inv_rus_v_1_t_2 = inv_rus_v_1_t_2;
-    v->rus_w_2_in_axes3_z = rus_w_2_in_axes3_z;
-    v->rus_d_alpha_3_in_axes3_xz = rus_d_alpha_3_in_axes3_xz;
-    v->rus_d_alpha_3_t = rus_d_alpha_3_t;
-    v->rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_in_axes3_z;
-    v->rus_d_c_in_axes3_xx = rus_d_c_in_axes3_xx;
-    v->rus_d_c_in_axes3_xy = rus_d_c_in_axes3_xy;
-    v->rus_d_c_in_axes3_xz = rus_d_c_in_axes3_xz;
-    v->rus_d_c_in_axes3_yz = rus_d_c_in_axes3_yz;
+    v->rus_d_Gamma_2_t_2 = v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i] -
+        v->rus_J_3_t_17*m->rus_h_3_in_spec3_x[i];
+    /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    v->rus_g_in_axes1_x = v->rus_c_1*m->rus_mu_1_t[i] + m->rus_mu_1_t_2[i]*v->rus_s_1;
+    v->rus_g_in_axes1_y = v->rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v->rus_s_1;
+    v->rus_mu_1_t_3 = v->rus_g_in_axes1_y*m->rus_h_1_in_spec1_x[i] -
+        v->rus_g_in_axes1_x*m->rus_h_1_in_spec1_y[i];
 }
 
-INLINE void stage_rus_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
-    *V, const real *A, values_rus *v)
+INLINE void stage_rus_A_X(size_t w, size_t j, const real *A, values_rus *v)
 {
-    /* (rus-w_1) reciprocal vector 1 */
-    const real axis_x_rus_axes3_x = v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_z -
-        v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_y;
-    const real axis_x_rus_axes3_y = v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_x -
-        v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_z;
-    const real axis_x_rus_axes3_z = v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_y -
-        v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_x;
-    const real rus_w_1_t_7 = axis_x_rus_axes3_x*v->inv_rus_v_1_t_2;
-    const real rus_w_1_t_8 = axis_x_rus_axes3_y*v->inv_rus_v_1_t_2;
-    const real rus_w_1_t_9 = axis_x_rus_axes3_z*v->inv_rus_v_1_t_2;
-    /* (rus-qd_1) rate of joint 1 */
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real t_dot_z = V[2*w + j];
-    const real rus_qd_1_t = v->inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
-        axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-    /* (rus-qd_3) rate of joint 3 */
-    const real rus_qd_3_t = v->axis_y_rus_axes3_x*t_dot_x + v->axis_y_rus_axes3_y*t_dot_y +
-        v->axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t*v->rus_v_1_in_axes3_y;
-    const real rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
-    /* (rus-omega_1) angular velocity of link 1 */
-    const real rus_omega_1_in_axes3_x = -v->rus_e_1_in_axes3_x*rus_qd_1_t;
-    const real rus_omega_1_in_axes3_y = v->rus_c_3*rus_qd_1_t;
-    /* (rus-omega_2) angular velocity of link 2 */
-    const real rus_omega_2_in_axes2_z = v->rus_w_2_in_axes3_z*(v->axis_z_rus_axes3_x*t_dot_x +
-        v->axis_z_rus_axes3_y*t_dot_y + v->axis_z_rus_axes3_z*t_dot_z +
-        rus_qd_1_t*v->rus_v_1_in_axes3_z) - rus_qd_1_t;
-    const real rus_omega_2_in_axes3_x = v->rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-    const real rus_omega_2_in_axes3_y = -v->rus_c_3*rus_omega_2_in_axes2_z;
-    /* (rus-W_3) centripetal tensor of link 3 */
-    const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
-    const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
-    const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
     /* (rus-S_ddot) acceleration of the connection point */
     const real t_ddot_x = A[0*w + j];
     const real t_ddot_y = A[1*w + j];
     const real t_ddot_z = A[2*w + j];
-    const real rus_S_ddot_in_axes3_x = axis_x_rus_axes3_x*t_ddot_x +
-        axis_x_rus_axes3_y*t_ddot_y + axis_x_rus_axes3_z*t_ddot_z;
-    const real rus_S_ddot_in_axes3_y = v->axis_y_rus_axes3_x*t_ddot_x +
-        v->axis_y_rus_axes3_y*t_ddot_y + v->axis_y_rus_axes3_z*t_ddot_z;
-    const real rus_S_ddot_in_axes3_z = v->axis_z_rus_axes3_x*t_ddot_x +
-        v->axis_z_rus_axes3_y*t_ddot_y + v->axis_z_rus_axes3_z*t_ddot_z;
+    v->rus_S_ddot_in_axes3_x = v->axis_x_rus_axes3_x*t_ddot_x + v->axis_x_rus_axes3_y*t_ddot_y
+        + v->axis_x_rus_axes3_z*t_ddot_z;
+    v->rus_S_ddot_in_axes3_y = v->axis_y_rus_axes3_x*t_ddot_x + v->axis_y_rus_axes3_y*t_ddot_y
+        + v->axis_y_rus_axes3_z*t_ddot_z;
+    v->rus_S_ddot_in_axes3_z = v->axis_z_rus_axes3_x*t_ddot_x + v->axis_z_rus_axes3_y*t_ddot_y
+        + v->axis_z_rus_axes3_z*t_ddot_z;
+}
+
+INLINE void stage_rus_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rus *v)
+{
+    /* (rus-qd_1) rate of joint 1 */
+    const real t_dot_x = V[0*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real t_dot_z = V[2*w + j];
+    v->rus_qd_1_t = v->inv_rus_v_1_t_2*(v->axis_x_rus_axes3_x*t_dot_x +
+        v->axis_x_rus_axes3_y*t_dot_y + v->axis_x_rus_axes3_z*t_dot_z);
+    /* (rus-qd_2) rate of joint 2 */
+    v->rus_qd_2 = v->rus_w_2_in_axes3_z*(v->axis_z_rus_axes3_x*t_dot_x +
+        v->axis_z_rus_axes3_y*t_dot_y + v->axis_z_rus_axes3_z*t_dot_z +
+        v->rus_qd_1_t*v->rus_v_1_in_axes3_z);
+    /* (rus-qd_3) rate of joint 3 */
+    const real rus_qd_3_t = v->axis_y_rus_axes3_x*t_dot_x + v->axis_y_rus_axes3_y*t_dot_y +
+        v->axis_y_rus_axes3_z*t_dot_z + v->rus_qd_1_t*v->rus_v_1_in_axes3_y;
+    v->rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
+    /* (rus-omega_1) angular velocity of link 1 */
+    const real rus_omega_1_in_axes3_x = -v->rus_e_1_in_axes3_x*v->rus_qd_1_t;
+    const real rus_omega_1_in_axes3_y = v->rus_J_3_t_17*v->rus_qd_1_t;
+    /* (rus-omega_2) angular velocity of link 2 */
+    const real rus_omega_2_in_axes2_z = v->rus_qd_2 - v->rus_qd_1_t;
+    const real rus_omega_2_in_axes3_x = v->rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+    const real rus_omega_2_in_axes3_y = -v->rus_J_3_t_17*rus_omega_2_in_axes2_z;
+    /* (rus-W_3) centripetal tensor of link 3 */
+    v->rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*v->rus_qd_3;
+    v->rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*v->rus_qd_3;
+    v->rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
     /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    const real rus_bias_t_2 = v->rus_bias_t*v->rus_c_3*rus_omega_1_in_axes3_y -
+    const real rus_bias_t_2 = v->rus_J_3_t_17*v->rus_bias_t*rus_omega_1_in_axes3_y -
         v->rus_bias_t*v->rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
     const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
-        - rus_bias_t_2*rus_omega_1_in_axes3_y;
-    const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
+    v->rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - v->rus_qd_3*rus_qd_3_t -
+        rus_bias_t_2*rus_omega_1_in_axes3_y;
+    v->rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
         rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
+    v->rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
         v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
         v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
-        rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
-    /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-    const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
-    const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
-    const real rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z;
-    /* (rus-qdd_1) acceleration of joint 1 */
-    const real rus_qdd_1_t = v->inv_rus_v_1_t_2*rus_rel_in_axes3_x;
-    /* (rus-qdd_3) acceleration of joint 3 */
-    const real rus_qdd_3_t = m->rus_w_3_in_axes3_y[i]*(-rus_rel_in_axes3_y -
-        rus_qdd_1_t*v->rus_v_1_in_axes3_y);
-    /* (rus-alpha_2) angular acceleration of link 2 */
-    const real rus_alpha_2_in_axes2_z = v->rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
-        rus_qdd_1_t*v->rus_v_1_in_axes3_z) - rus_qdd_1_t;
-    const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*v->rus_e_1_in_axes3_x;
-    const real rus_alpha_2_in_axes3_y = -rus_alpha_2_in_axes2_z*v->rus_c_3;
-    /* (rus-alpha_3) angular acceleration of link 3 */
-    const real rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
-    const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz;
-    /* (rus-B_3) acceleration tensor of link 3 */
-    const real rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t;
-    const real rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t;
-    const real rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
-    const real rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
-    /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*m->gravity_x
-        - axis_x_rus_axes3_y*m->gravity_y - axis_x_rus_axes3_z*m->gravity_z;
-    const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y -
-        v->axis_y_rus_axes3_x*m->gravity_x - v->axis_y_rus_axes3_y*m->gravity_y -
-        v->axis_y_rus_axes3_z*m->gravity_z;
-    const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z -
-        v->axis_z_rus_axes3_x*m->gravity_x - v->axis_z_rus_axes3_y*m->gravity_y -
-        v->axis_z_rus_axes3_z*m->gravity_z;
+        v->rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
     /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
     const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
-    const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
+    const real rus_mu_3_t_3 = v->rus_qd_3*v->rus_qd_3;
+    v->rus_mu_3_t_4 = m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_t_2 - rus_mu_3_t_3);
+    v->rus_mu_3_t_5 = m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_t - rus_mu_3_t_3);
+    v->rus_mu_3_t_6 = m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_t - rus_mu_3_t_2);
+    /* (rus-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->rus_c_t = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_t_3 + rus_mu_3_t_2);
+    v->rus_c_t_2 = m->rus_h_3_in_spec3_z[i]*(rus_mu_3_t_3 + rus_mu_3_t);
+    v->rus_c_t_3 = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_t + rus_mu_3_t_2);
+}
+
+INLINE void stage_rus_A_V_X(const prepared *m, size_t i, values_rus *v)
+{
+    /* (rus-rel) acceleration of the connection point left to the joint accelerations */
+    const real rus_rel_in_axes3_x = v->rus_S_ddot_in_axes3_x - v->rus_bias_in_axes3_x;
+    const real rus_rel_in_axes3_y = v->rus_S_ddot_in_axes3_y - v->rus_bias_in_axes3_y;
+    const real rus_rel_in_axes3_z = v->rus_S_ddot_in_axes3_z - v->rus_bias_in_axes3_z;
+    /* (rus-qdd_1) acceleration of joint 1 */
+    v->rus_qdd_1_t = v->inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+    /* (rus-qdd_2) acceleration of joint 2 */
+    v->rus_qdd_2 = v->rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
+        v->rus_qdd_1_t*v->rus_v_1_in_axes3_z);
+    /* (rus-qdd_3) acceleration of joint 3 */
+    v->rus_qdd_3_t = m->rus_w_3_in_axes3_y[i]*(-rus_rel_in_axes3_y -
+        v->rus_qdd_1_t*v->rus_v_1_in_axes3_y);
+}
+
+INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
+{
+    /* (rus-J_3) inertia tensor of link 3 about the connection point */
+    const real rus_J_3_in_axes2_yz = m->rus_J_3_in_spec3_xy[i]*v->rus_e_1_in_axes3_x +
+        m->rus_J_3_in_spec3_yz[i]*v->rus_J_3_t_17;
+    const real rus_J_3_in_axes1_zz =
+        v->rus_J_3_t_17*(m->rus_J_3_in_spec3_xz[i]*v->rus_e_1_in_axes3_x +
+        m->rus_J_3_in_spec3_zz[i]*v->rus_J_3_t_17) -
+        v->rus_e_1_in_axes3_x*(-m->rus_J_3_in_spec3_xx[i]*v->rus_e_1_in_axes3_x -
+        m->rus_J_3_in_spec3_xz[i]*v->rus_J_3_t_17);
+    /* (rus-w_2) reciprocal vector 2 */
+    const real rus_w_2_in_axes3_x =
+        v->inv_rus_v_1_t_2*v->rus_v_1_in_axes3_z*v->rus_w_2_in_axes3_z;
+    /* (rus-w_3) reciprocal vector 3 */
+    const real rus_w_3_in_axes3_x =
+        v->inv_rus_v_1_t_2*v->rus_v_1_in_axes3_y*m->rus_w_3_in_axes3_y[i];
+    /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+    const real rus_d_alpha_3_t = v->rus_J_3_t_17*v->rus_w_2_in_axes3_z;
+    /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*v->rus_w_2_in_axes3_z;
+    const real rus_d_Gamma_3_in_axes3_x = m->rus_h_3_in_spec3_z[i] -
+        v->inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz - m->rus_d_Gamma_3_t[i]*v->rus_v_1_in_axes3_y
+        - rus_d_Gamma_3_in_axes3_z*v->rus_v_1_in_axes3_z);
+    /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rus_d_Gamma_2_t = v->rus_J_3_t_17*m->rus_h_3_in_spec3_y[i];
+    const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes1_zz*v->rus_w_2_in_axes3_z;
+    const real rus_d_Gamma_2_t_4 = rus_J_3_in_axes2_yz*m->rus_w_3_in_axes3_y[i];
+    const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*v->rus_v_1_in_axes3_z;
+    const real rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*v->rus_v_1_in_axes3_y;
+    const real rus_d_Gamma_2_in_axes3_x = v->inv_rus_v_1_t_2*(rus_d_Gamma_2_t_6 -
+        rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5) - rus_d_Gamma_2_t;
+    const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_4 -
+        v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_y[i];
+    const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_3 - v->rus_d_Gamma_2_t_2;
+    /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rus_d_Gamma_1_in_axes3_x = v->inv_rus_v_1_t_2*(rus_d_Gamma_2_t_6 -
+        m->rus_J_1_in_spec1_zz[i] - rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5) -
+        rus_d_Gamma_2_t;
+    /* (rus-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real rus_d_G_in_axes3_zy = rus_d_Gamma_2_in_axes3_y*v->rus_w_2_in_axes3_z;
+    /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rus_d_c_in_axes3_xx = v->inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x -
+        rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
+        rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
+        m->rus_h_3_in_spec3_z[i]*rus_w_3_in_axes3_x -
+        m->rus_h_3_in_spec3_y[i]*(v->inv_rus_v_1_t_2*v->rus_J_3_t_17 -
+        v->rus_J_3_t_17*rus_w_2_in_axes3_x);
+    const real rus_d_c_in_axes3_xy = v->inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
+        m->rus_d_phi_3_in_axes3_xy[i] - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x -
+        m->rus_d_Gamma_3_in_axes3_y[i]*rus_w_3_in_axes3_x;
+    const real rus_d_c_in_axes3_xz = rus_d_alpha_3_t*m->rus_h_3_in_spec3_y[i] +
+        v->inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z -
+        rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
+        rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x;
+    /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rus_Q_t = rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
+    const real rus_Q_t_2 = R(0.5)*rus_Q_t;
+    const real rus_Q_t_3 = rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
+        v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i]*v->rus_w_2_in_axes3_z +
+        rus_d_Gamma_2_in_axes3_z*v->rus_w_2_in_axes3_z + rus_d_c_in_axes3_xx;
+    const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
+    const real rus_Q_t_5 = v->axis_z_rus_axes3_x*rus_d_G_in_axes3_zy -
+        v->axis_x_rus_axes3_x*rus_d_c_in_axes3_xy + v->axis_y_rus_axes3_x*rus_Q_t_2;
+    const real rus_Q_t_6 = v->axis_z_rus_axes3_y*rus_d_G_in_axes3_zy -
+        v->axis_x_rus_axes3_y*rus_d_c_in_axes3_xy + v->axis_y_rus_axes3_y*rus_Q_t_2;
+    const real rus_Q_t_7 = v->axis_z_rus_axes3_z*rus_d_G_in_axes3_zy -
+        v->axis_x_rus_axes3_z*rus_d_c_in_axes3_xy + v->axis_y_rus_axes3_z*rus_Q_t_2;
+    const real rus_Q_t_8 = v->axis_z_rus_axes3_x*rus_Q_t_4 -
+        v->axis_x_rus_axes3_x*rus_d_c_in_axes3_xz;
+    const real rus_Q_t_9 = v->axis_z_rus_axes3_y*rus_Q_t_4 -
+        v->axis_x_rus_axes3_y*rus_d_c_in_axes3_xz;
+    const real rus_Q_t_10 = v->axis_z_rus_axes3_z*rus_Q_t_4 -
+        v->axis_x_rus_axes3_z*rus_d_c_in_axes3_xz;
+    const real rus_Q_t_11 = v->axis_y_rus_axes3_x*rus_Q_t_5 + v->axis_z_rus_axes3_x*rus_Q_t_8;
+    v->rus_Q_xx = 2*rus_Q_t_11 - rus_d_c_in_axes3_xx;
+    v->rus_Q_xy = v->axis_y_rus_axes3_x*rus_Q_t_6 + v->axis_y_rus_axes3_y*rus_Q_t_5 +
+        v->axis_z_rus_axes3_x*rus_Q_t_9 + v->axis_z_rus_axes3_y*rus_Q_t_8;
+    v->rus_Q_xz = v->axis_y_rus_axes3_x*rus_Q_t_7 + v->axis_y_rus_axes3_z*rus_Q_t_5 +
+        v->axis_z_rus_axes3_x*rus_Q_t_10 + v->axis_z_rus_axes3_z*rus_Q_t_8;
+    const real rus_Q_t_12 = v->axis_y_rus_axes3_y*rus_Q_t_6 + v->axis_z_rus_axes3_y*rus_Q_t_9;
+    v->rus_Q_yy = 2*rus_Q_t_12 - rus_d_c_in_axes3_xx;
+    v->rus_Q_yz = v->axis_y_rus_axes3_y*rus_Q_t_7 + v->axis_y_rus_axes3_z*rus_Q_t_6 +
+        v->axis_z_rus_axes3_y*rus_Q_t_10 + v->axis_z_rus_axes3_z*rus_Q_t_9;
+    const real rus_Q_t_13 = v->axis_y_rus_axes3_z*rus_Q_t_7 +
+        v->axis_z_rus_axes3_z*rus_Q_t_10;
+    v->rus_Q_zz = 2*rus_Q_t_13 - rus_d_c_in_axes3_xx;
+}
+
+INLINE void stage_rus_Z_dynamics(const prepared *m, size_t i, values_rus *v)
+{
+    /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rus_qdd_1_o = v->inv_rus_v_1_t_2*v->rus_bias_in_axes3_x;
+    /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
+    const real rus_qdd_3_o = -m->rus_w_3_in_axes3_y[i]*(v->rus_bias_in_axes3_y +
+        rus_qdd_1_o*v->rus_v_1_in_axes3_y);
+    /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rus_alpha_2_o_in_axes2_z = rus_qdd_1_o -
+        v->rus_w_2_in_axes3_z*(v->rus_bias_in_axes3_z + rus_qdd_1_o*v->rus_v_1_in_axes3_z);
+    const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v->rus_e_1_in_axes3_x;
+    const real rus_alpha_2_o_in_axes3_y = -v->rus_J_3_t_17*rus_alpha_2_o_in_axes2_z;
+    /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real rus_alpha_3_o_in_axes3_x = v->rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
+    const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - v->rus_W_3_in_axes3_xz;
+    /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real rus_B_3_o_in_axes3_xy = v->rus_W_3_in_axes3_xy - rus_qdd_3_o;
+    const real rus_B_3_o_in_axes3_yx = v->rus_W_3_in_axes3_xy + rus_qdd_3_o;
+    const real rus_B_3_o_in_axes3_zx = v->rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
+    const real rus_B_3_o_in_axes3_zy = v->rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
+    /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real rus_mu_3_o_in_axes3_x = v->rus_g_in_axes3_z*m->rus_h_3_in_spec3_z[i] +
+        v->rus_g_in_axes3_y*m->rus_h_3_in_spec3_y[i] - v->rus_mu_3_t_4 +
+        rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
+        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
+        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
+    const real rus_mu_3_o_in_axes3_y = v->rus_g_in_axes3_z*m->rus_h_3_in_spec3_x[i] -
+        v->rus_g_in_axes3_x*m->rus_h_3_in_spec3_y[i] - v->rus_mu_3_t_5 +
+        rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y -
+        rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
+        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
+    const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] -
+        v->rus_g_in_axes3_y*m->rus_h_3_in_spec3_x[i] -
+        v->rus_g_in_axes3_x*m->rus_h_3_in_spec3_z[i] - v->rus_mu_3_t_6 +
+        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
+        rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
+        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y;
+    const real rus_mu_3_o_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
+        v->rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
+    /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rus_mu_1_o_in_axes1_z = m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o -
+        v->rus_mu_1_t_3;
+    /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
+    /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v->rus_w_2_in_axes3_z;
+    const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
+    /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rus_c_o_in_axes3_x = v->rus_c_t +
+        rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
+        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
+        v->inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*v->rus_v_1_in_axes3_y -
+        rus_G_o_in_axes3_z*v->rus_v_1_in_axes3_z);
+    const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        v->rus_c_t_2 - rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
+    const real rus_c_o_in_axes3_z = v->rus_c_t_3 +
+        rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
+        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_z;
+    /* (rus-U) velocity and gravity terms of the leg force */
+    v->rus_U_x = -v->axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
+        v->axis_z_rus_axes3_x*rus_c_o_in_axes3_z - v->axis_x_rus_axes3_x*rus_c_o_in_axes3_x;
+    v->rus_U_y = -v->axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
+        v->axis_z_rus_axes3_y*rus_c_o_in_axes3_z - v->axis_x_rus_axes3_y*rus_c_o_in_axes3_x;
+    v->rus_U_z = -v->axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
+        v->axis_z_rus_axes3_z*rus_c_o_in_axes3_z - v->axis_x_rus_axes3_z*rus_c_o_in_axes3_x;
+}
+
+INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
+{
+    /* (rus-alpha_2) angular acceleration of link 2 */
+    const real rus_alpha_2_in_axes2_z = v->rus_qdd_2 - v->rus_qdd_1_t;
+    const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*v->rus_e_1_in_axes3_x;
+    const real rus_alpha_2_in_axes3_y = -v->rus_J_3_t_17*rus_alpha_2_in_axes2_z;
+    /* (rus-alpha_3) angular acceleration of link 3 */
+    const real rus_alpha_3_in_axes3_x = v->rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
+    const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - v->rus_W_3_in_axes3_xz;
+    /* (rus-B_3) acceleration tensor of link 3 */
+    const real rus_B_3_in_axes3_xy = v->rus_W_3_in_axes3_xy + v->rus_qdd_3_t;
+    const real rus_B_3_in_axes3_yx = v->rus_W_3_in_axes3_xy - v->rus_qdd_3_t;
+    const real rus_B_3_in_axes3_zx = v->rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
+    const real rus_B_3_in_axes3_zy = v->rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
+    /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
+    v->rus_acc_3_in_axes3_x = v->rus_S_ddot_in_axes3_x - v->rus_g_in_axes3_x;
+    v->rus_acc_3_in_axes3_y = v->rus_S_ddot_in_axes3_y - v->rus_g_in_axes3_y;
+    v->rus_acc_3_in_axes3_z = v->rus_S_ddot_in_axes3_z - v->rus_g_in_axes3_z;
+    /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] -
-        rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
-        rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_y[i] -
-        m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_t_2 - rus_mu_3_t_3) +
+        v->rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
+        v->rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_y[i] - v->rus_mu_3_t_4 +
         m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_x +
         rus_B_3_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
         rus_B_3_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
-    const real rus_mu_3_in_axes3_y = rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_x[i] - m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_t
-        - rus_mu_3_t_3) + rus_B_3_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+    const real rus_mu_3_in_axes3_y = v->rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        v->rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_x[i] - v->rus_mu_3_t_5 +
+        rus_B_3_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
         m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_y -
         rus_B_3_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
         rus_B_3_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
-    const real rus_mu_3_in_axes3_z = rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_x[i] +
-        rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_z[i] - m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_t
-        - rus_mu_3_t_2) + rus_B_3_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
+    const real rus_mu_3_in_axes3_z = v->rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_x[i] +
+        v->rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_z[i] - v->rus_mu_3_t_6 +
+        rus_B_3_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] -
+        rus_B_3_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] +
         m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_in_axes3_x -
-        rus_B_3_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
         m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_in_axes3_y;
     const real rus_mu_3_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x -
-        v->rus_c_3*rus_mu_3_in_axes3_y;
+        v->rus_J_3_t_17*rus_mu_3_in_axes3_y;
     /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rus_mu_1_in_axes1_z = m->rus_h_1_in_spec1_y[i]*(v->rus_c_1*m->rus_mu_1_t[i] +
-        m->rus_mu_1_t_2[i]*v->rus_s_1) -
-        m->rus_h_1_in_spec1_x[i]*(v->rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v->rus_s_1)
-        - m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_t;
+    const real rus_mu_1_in_axes1_z = -v->rus_mu_1_t_3 -
+        m->rus_J_1_in_spec1_zz[i]*v->rus_qdd_1_t;
     /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
@@ -1639,29 +1654,14 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t w, size_t i, size_
     const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*m->rus_w_3_in_axes3_y[i];
     /* (rus-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rus_c_in_axes3_x = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_t_3 + rus_mu_3_t_2) +
-        rus_B_3_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
+    v->rus_c_in_axes3_x = v->rus_c_t + rus_B_3_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
         rus_alpha_2_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
         v->inv_rus_v_1_t_2*(rus_N_1_in_axes1_z - rus_G_in_axes3_y*v->rus_v_1_in_axes3_y -
         rus_G_in_axes3_z*v->rus_v_1_in_axes3_z);
-    const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_t_3 + rus_mu_3_t) -
+    v->rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*m->rus_h_3_in_spec3_y[i] - v->rus_c_t_2 -
         rus_B_3_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_in_axes3_y;
-    const real rus_c_in_axes3_z = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_t + rus_mu_3_t_2) +
-        rus_B_3_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
+    v->rus_c_in_axes3_z = v->rus_c_t_3 + rus_B_3_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
         rus_B_3_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_in_axes3_z;
-    v->axis_x_rus_axes3_x = axis_x_rus_axes3_x;
-    v->axis_x_rus_axes3_y = axis_x_rus_axes3_y;
-    v->axis_x_rus_axes3_z = axis_x_rus_axes3_z;
-    v->rus_w_1_t_7 = rus_w_1_t_7;
-    v->rus_w_1_t_8 = rus_w_1_t_8;
-    v->rus_w_1_t_9 = rus_w_1_t_9;
-    v->rus_acc_3_in_axes3_x = rus_acc_3_in_axes3_x;
-    v->rus_acc_3_in_axes3_y = rus_acc_3_in_axes3_y;
-    v->rus_acc_3_in_axes3_z = rus_acc_3_in_axes3_z;
-    v->rus_c_in_axes3_x = rus_c_in_axes3_x;
-    v->rus_c_in_axes3_y = rus_c_in_axes3_y;
-    v->rus_c_in_axes3_z = rus_c_in_axes3_z;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
@@ -1671,200 +1671,26 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     count, int add, const real *X, const real *V, real *terms, real *o)
 {
     values_rus v;
-    stage_rus_M_dynamics(m, w, i, j, X, &v);
-    /* (rus-w_1) reciprocal vector 1 */
-    const real rus_w_1_t = v.rus_c_1*v.rus_s_2_t - v.rus_c_2*v.rus_s_1;
-    const real rus_w_1_t_2 = v.rus_c_1*v.rus_c_2 + v.rus_s_1*v.rus_s_2_t;
-    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t +
-        m->rus_base_frame_xy[i]*rus_w_1_t_2;
-    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t +
-        m->rus_base_frame_yy[i]*rus_w_1_t_2;
-    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t +
-        m->rus_base_frame_zy[i]*rus_w_1_t_2;
-    const real rus_w_1_t_3 = v.rus_c_2*v.rus_e_1_in_axes3_x;
-    const real rus_w_1_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
-    const real rus_w_1_t_5 = v.rus_c_1*rus_w_1_t_3 + v.rus_s_1*rus_w_1_t_4;
-    const real rus_w_1_t_6 = v.rus_s_1*rus_w_1_t_3 - v.rus_c_1*rus_w_1_t_4;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 -
-        v.rus_J_3_t_17*m->rus_base_frame_xz[i] + m->rus_base_frame_xy[i]*rus_w_1_t_6;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 -
-        v.rus_J_3_t_17*m->rus_base_frame_yz[i] + m->rus_base_frame_yy[i]*rus_w_1_t_6;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 -
-        v.rus_J_3_t_17*m->rus_base_frame_zz[i] + m->rus_base_frame_zy[i]*rus_w_1_t_6;
-    const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-        axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-    const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-        axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-    const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-        axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-    const real rus_w_1_t_7 = axis_x_rus_axes3_x*v.inv_rus_v_1_t_2;
-    const real rus_w_1_t_8 = axis_x_rus_axes3_y*v.inv_rus_v_1_t_2;
-    const real rus_w_1_t_9 = axis_x_rus_axes3_z*v.inv_rus_v_1_t_2;
-    /* (rus-qd_1) rate of joint 1 */
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real t_dot_z = V[2*w + j];
-    const real rus_qd_1_t = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
-        axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-    /* (rus-qd_3) rate of joint 3 */
-    const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
-        axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t*v.rus_v_1_in_axes3_y;
-    const real rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
-    /* (rus-omega_1) angular velocity of link 1 */
-    const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t;
-    const real rus_omega_1_in_axes3_y = v.rus_J_3_t_17*rus_qd_1_t;
-    /* (rus-omega_2) angular velocity of link 2 */
-    const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x +
-        axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
-        rus_qd_1_t*v.rus_v_1_in_axes3_z) - rus_qd_1_t;
-    const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-    const real rus_omega_2_in_axes3_y = -v.rus_J_3_t_17*rus_omega_2_in_axes2_z;
-    /* (rus-W_3) centripetal tensor of link 3 */
-    const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
-    const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
-    const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
-    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    const real rus_bias_t = v.rus_c_2*m->rus_joint2_offset_x[i];
-    const real rus_d_2_in_axes3_z = m->rus_joint2_offset_x[i]*v.rus_s_2_t;
-    const real rus_bias_t_2 = v.rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
-        rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
-    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
-        - rus_bias_t_2*rus_omega_1_in_axes3_y;
-    const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
-        rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
-        rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
-        rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
-    /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rus_qdd_1_o = v.inv_rus_v_1_t_2*rus_bias_in_axes3_x;
-    /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
-    const real rus_qdd_3_o = -m->rus_w_3_in_axes3_y[i]*(rus_bias_in_axes3_y +
-        rus_qdd_1_o*v.rus_v_1_in_axes3_y);
-    /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rus_alpha_2_o_in_axes2_z = rus_qdd_1_o -
-        v.rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*v.rus_v_1_in_axes3_z);
-    const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
-    const real rus_alpha_2_o_in_axes3_y = -v.rus_J_3_t_17*rus_alpha_2_o_in_axes2_z;
-    /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
-    const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
-    /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
-    const real rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o;
-    const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
-    const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
-    const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
-    /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-       reference points */
-    const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
-    const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
-    const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
-    const real rus_g_in_axes3_x = axis_x_rus_axes3_x*m->gravity_x +
-        axis_x_rus_axes3_y*m->gravity_y + axis_x_rus_axes3_z*m->gravity_z;
-    const real rus_g_in_axes3_y = axis_y_rus_axes3_x*m->gravity_x +
-        axis_y_rus_axes3_y*m->gravity_y + axis_y_rus_axes3_z*m->gravity_z;
-    const real rus_g_in_axes3_z = axis_z_rus_axes3_x*m->gravity_x +
-        axis_z_rus_axes3_y*m->gravity_y + axis_z_rus_axes3_z*m->gravity_z;
-    const real rus_mu_3_o_in_axes3_x = rus_g_in_axes3_z*m->rus_h_3_in_spec3_z[i] +
-        rus_g_in_axes3_y*m->rus_h_3_in_spec3_y[i] - m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2
-        - rus_mu_3_o_t_3) + rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
-        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
-        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
-    const real rus_mu_3_o_in_axes3_y = rus_g_in_axes3_z*m->rus_h_3_in_spec3_x[i] -
-        rus_g_in_axes3_x*m->rus_h_3_in_spec3_y[i] - m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t -
-        rus_mu_3_o_t_3) + rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y -
-        rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
-        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
-    const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] -
-        rus_g_in_axes3_y*m->rus_h_3_in_spec3_x[i] - rus_g_in_axes3_x*m->rus_h_3_in_spec3_z[i]
-        - m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) +
-        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
-        rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
-        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y;
-    const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
-        v.rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
-    /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rus_mu_1_o_in_axes1_z = m->rus_h_1_in_spec1_y[i]*(v.rus_c_1*m->rus_mu_1_t[i] +
-        m->rus_mu_1_t_2[i]*v.rus_s_1) - m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i]
-        - m->rus_mu_1_t[i]*v.rus_s_1) + m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o;
-    /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
-    /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
-    const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
-    /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rus_c_o_in_axes3_x = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t_2)
-        + rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
-        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
-        v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y -
-        rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z);
-    const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t) -
-        rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
-    const real rus_c_o_in_axes3_z = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) +
-        rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
-        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_z;
-    /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rus_Q_t = v.rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
-    const real rus_Q_t_2 = R(0.5)*rus_Q_t;
-    const real rus_Q_t_3 = v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
-        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i] +
-        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_c_in_axes3_xx;
-    const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
-    const real rus_Q_t_5 = axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz +
-        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_x*rus_Q_t_2;
-    const real rus_Q_t_6 = axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz +
-        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_y*rus_Q_t_2;
-    const real rus_Q_t_7 = axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz +
-        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_z*rus_Q_t_2;
-    const real rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 -
-        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
-    const real rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 -
-        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xz;
-    const real rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 -
-        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
-    const real rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 - axis_z_rus_axes3_x*rus_Q_t_8;
-    const real rus_Q_xx = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_11;
-    const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_9 + axis_z_rus_axes3_y*rus_Q_t_8 -
-        axis_y_rus_axes3_x*rus_Q_t_6 - axis_y_rus_axes3_y*rus_Q_t_5;
-    const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8 -
-        axis_y_rus_axes3_x*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_5;
-    const real rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 - axis_z_rus_axes3_y*rus_Q_t_9;
-    const real rus_Q_yy = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_12;
-    const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9 -
-        axis_y_rus_axes3_y*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_6;
-    const real rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 - axis_z_rus_axes3_z*rus_Q_t_10;
-    const real rus_Q_zz = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_13;
-    /* (rus-U) velocity and gravity terms of the leg force */
-    const real rus_U_x = -axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
-        axis_z_rus_axes3_x*rus_c_o_in_axes3_z - axis_x_rus_axes3_x*rus_c_o_in_axes3_x;
-    const real rus_U_y = -axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
-        axis_z_rus_axes3_y*rus_c_o_in_axes3_z - axis_x_rus_axes3_y*rus_c_o_in_axes3_x;
-    const real rus_U_z = -axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
-        axis_z_rus_axes3_z*rus_c_o_in_axes3_z - axis_x_rus_axes3_z*rus_c_o_in_axes3_x;
+    stage_rus_X(m, w, i, j, X, &v);
+    stage_rus_V_X(m, w, i, j, V, &v);
+    stage_rus_M_dynamics(m, i, &v);
+    stage_rus_Z_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rus_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, rus_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, rus_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, rus_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[0*count + k], add, v.rus_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rus_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rus_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.rus_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.rus_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.rus_Q_zz);  /* M_tt_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[6*count + k], add, rus_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, rus_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[8*count + k], add, rus_U_z);  /* Z_t_z_of_legs */
-    /* (rus-w_1) */
-    o[0*count + k] = -rus_w_1_t_7;
-    o[1*count + k] = -rus_w_1_t_8;
-    o[2*count + k] = -rus_w_1_t_9;
-    o[5*count + k] = rus_w_1_t_7 + (rus_w_1_t_8 + rus_w_1_t_9);
+    gather(&terms[6*count + k], add, v.rus_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, v.rus_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[8*count + k], add, v.rus_U_z);  /* Z_t_z_of_legs */
+    /* (rus-w_1) reciprocal vector 1 */
+    o[0*count + k] = -v.rus_w_1_t_7;
+    o[1*count + k] = -v.rus_w_1_t_8;
+    o[2*count + k] = -v.rus_w_1_t_9;
+    o[5*count + k] = v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9);
     o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
         TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
@@ -1874,7 +1700,7 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void dynamics_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1885,7 +1711,7 @@ INLINE void dynamics_place_rus(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
-    *Z, verdict *t)
+    *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -1923,7 +1749,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     real sums[9] = {0};
     real terms_rus[9*LEGS(LEGS_OF_rus)] = {0}, o_rus[6*LEGS(LEGS_OF_rus)] = {0};
@@ -1940,7 +1766,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
     real sums[9*LANES];
     real o_rus[6*LANES];
@@ -1963,69 +1789,15 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     int add, const real *X, real *terms, real *o)
 {
     values_rus v;
-    stage_rus_M_dynamics(m, w, i, j, X, &v);
-    /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rus_Q_t = v.rus_c_1*v.rus_s_2_t - v.rus_c_2*v.rus_s_1;
-    const real rus_Q_t_2 = v.rus_c_1*v.rus_c_2 + v.rus_s_1*v.rus_s_2_t;
-    const real axis_z_rus_axes3_x = rus_Q_t*m->rus_base_frame_xx[i] +
-        rus_Q_t_2*m->rus_base_frame_xy[i];
-    const real axis_z_rus_axes3_y = rus_Q_t*m->rus_base_frame_yx[i] +
-        rus_Q_t_2*m->rus_base_frame_yy[i];
-    const real axis_z_rus_axes3_z = rus_Q_t*m->rus_base_frame_zx[i] +
-        rus_Q_t_2*m->rus_base_frame_zy[i];
-    const real rus_Q_t_3 = v.rus_c_2*v.rus_e_1_in_axes3_x;
-    const real rus_Q_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
-    const real rus_Q_t_5 = rus_Q_t_3*v.rus_c_1 + rus_Q_t_4*v.rus_s_1;
-    const real rus_Q_t_6 = rus_Q_t_3*v.rus_s_1 - rus_Q_t_4*v.rus_c_1;
-    const real axis_y_rus_axes3_x = rus_Q_t_5*m->rus_base_frame_xx[i] -
-        v.rus_J_3_t_17*m->rus_base_frame_xz[i] + rus_Q_t_6*m->rus_base_frame_xy[i];
-    const real axis_y_rus_axes3_y = rus_Q_t_5*m->rus_base_frame_yx[i] -
-        v.rus_J_3_t_17*m->rus_base_frame_yz[i] + rus_Q_t_6*m->rus_base_frame_yy[i];
-    const real axis_y_rus_axes3_z = rus_Q_t_5*m->rus_base_frame_zx[i] -
-        v.rus_J_3_t_17*m->rus_base_frame_zz[i] + rus_Q_t_6*m->rus_base_frame_zy[i];
-    const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-        axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-    const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-        axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-    const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-        axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-    const real rus_Q_t_7 = v.rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
-    const real rus_Q_t_8 = R(0.5)*rus_Q_t_7;
-    const real rus_Q_t_9 = v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
-        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i] +
-        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_c_in_axes3_xx;
-    const real rus_Q_t_10 = R(0.5)*rus_Q_t_9;
-    const real rus_Q_t_11 = axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz +
-        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_x*rus_Q_t_8;
-    const real rus_Q_t_12 = axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz +
-        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_y*rus_Q_t_8;
-    const real rus_Q_t_13 = axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz +
-        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_z*rus_Q_t_8;
-    const real rus_Q_t_14 = axis_z_rus_axes3_x*rus_Q_t_10 -
-        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
-    const real rus_Q_t_15 = axis_z_rus_axes3_y*rus_Q_t_10 -
-        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xz;
-    const real rus_Q_t_16 = axis_z_rus_axes3_z*rus_Q_t_10 -
-        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
-    const real rus_Q_t_17 = axis_y_rus_axes3_x*rus_Q_t_11 - axis_z_rus_axes3_x*rus_Q_t_14;
-    const real rus_Q_xx = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_17;
-    const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_15 + axis_z_rus_axes3_y*rus_Q_t_14 -
-        axis_y_rus_axes3_x*rus_Q_t_12 - axis_y_rus_axes3_y*rus_Q_t_11;
-    const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_14 -
-        axis_y_rus_axes3_x*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_11;
-    const real rus_Q_t_18 = axis_y_rus_axes3_y*rus_Q_t_12 - axis_z_rus_axes3_y*rus_Q_t_15;
-    const real rus_Q_yy = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_18;
-    const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_15 -
-        axis_y_rus_axes3_y*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_12;
-    const real rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16;
-    const real rus_Q_zz = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_19;
+    stage_rus_X(m, w, i, j, X, &v);
+    stage_rus_M_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rus_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, rus_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, rus_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, rus_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[0*count + k], add, v.rus_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rus_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rus_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.rus_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.rus_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.rus_Q_zz);  /* M_tt_zz_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
         TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
@@ -2034,13 +1806,14 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
-INLINE void M_place_rus(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_rus(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, verdict *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
+    *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2065,7 +1838,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real sums[6] = {0};
     real terms_rus[6*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
@@ -2081,7 +1854,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     M_after(m, 1, 0, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
     real sums[6*LANES];
     real o_rus[2*LANES];
@@ -2105,158 +1879,28 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rus v;
     stage_rus_X(m, w, i, j, X, &v);
-    /* (rus-qd_1) rate of joint 1 */
-    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_xy[i]*v.rus_qd_1_t_2;
-    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
-    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_xz[i]*v.rus_c_3 + m->rus_base_frame_xy[i]*v.rus_qd_1_t_6;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_yz[i]*v.rus_c_3 + m->rus_base_frame_yy[i]*v.rus_qd_1_t_6;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_zz[i]*v.rus_c_3 + m->rus_base_frame_zy[i]*v.rus_qd_1_t_6;
-    const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-        axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-    const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-        axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-    const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-        axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real t_dot_z = V[2*w + j];
-    const real rus_qd_1_t_7 = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
-        axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-    /* (rus-qd_3) rate of joint 3 */
-    const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
-        axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t_7*v.rus_v_1_in_axes3_y;
-    const real rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
-    /* (rus-omega_1) angular velocity of link 1 */
-    const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t_7;
-    const real rus_omega_1_in_axes3_y = v.rus_c_3*rus_qd_1_t_7;
-    /* (rus-omega_2) angular velocity of link 2 */
-    const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x +
-        axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
-        rus_qd_1_t_7*v.rus_v_1_in_axes3_z) - rus_qd_1_t_7;
-    const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-    const real rus_omega_2_in_axes3_y = -v.rus_c_3*rus_omega_2_in_axes2_z;
-    /* (rus-W_3) centripetal tensor of link 3 */
-    const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
-    const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
-    const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
-    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
-        v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
-    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
-        - rus_bias_t_2*rus_omega_1_in_axes3_y;
-    const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
-        rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
-        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
-        rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
-    /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rus_qdd_1_o = v.inv_rus_v_1_t_2*rus_bias_in_axes3_x;
-    /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
-    const real rus_qdd_3_o = -m->rus_w_3_in_axes3_y[i]*(rus_bias_in_axes3_y +
-        rus_qdd_1_o*v.rus_v_1_in_axes3_y);
-    /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rus_alpha_2_o_in_axes2_z = rus_qdd_1_o -
-        v.rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*v.rus_v_1_in_axes3_z);
-    const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
-    const real rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*v.rus_c_3;
-    /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
-    const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
-    /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
-    const real rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o;
-    const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
-    const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
-    const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
-    /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-       reference points */
-    const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
-    const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
-    const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
-    const real rus_g_in_axes3_x = axis_x_rus_axes3_x*m->gravity_x +
-        axis_x_rus_axes3_y*m->gravity_y + axis_x_rus_axes3_z*m->gravity_z;
-    const real rus_g_in_axes3_y = axis_y_rus_axes3_x*m->gravity_x +
-        axis_y_rus_axes3_y*m->gravity_y + axis_y_rus_axes3_z*m->gravity_z;
-    const real rus_g_in_axes3_z = axis_z_rus_axes3_x*m->gravity_x +
-        axis_z_rus_axes3_y*m->gravity_y + axis_z_rus_axes3_z*m->gravity_z;
-    const real rus_mu_3_o_in_axes3_x = rus_g_in_axes3_z*m->rus_h_3_in_spec3_z[i] +
-        rus_g_in_axes3_y*m->rus_h_3_in_spec3_y[i] - m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2
-        - rus_mu_3_o_t_3) + rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
-        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
-        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
-    const real rus_mu_3_o_in_axes3_y = rus_g_in_axes3_z*m->rus_h_3_in_spec3_x[i] -
-        rus_g_in_axes3_x*m->rus_h_3_in_spec3_y[i] - m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t -
-        rus_mu_3_o_t_3) + rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y -
-        rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
-        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
-    const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] -
-        rus_g_in_axes3_y*m->rus_h_3_in_spec3_x[i] - rus_g_in_axes3_x*m->rus_h_3_in_spec3_z[i]
-        - m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) +
-        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
-        rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
-        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y;
-    const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
-        v.rus_c_3*rus_mu_3_o_in_axes3_y;
-    /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rus_mu_1_o_in_axes1_z = m->rus_h_1_in_spec1_y[i]*(v.rus_c_1*m->rus_mu_1_t[i] +
-        m->rus_mu_1_t_2[i]*v.rus_s_1) - m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i]
-        - m->rus_mu_1_t[i]*v.rus_s_1) + m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o;
-    /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
-    /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
-    const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
-    /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rus_c_o_in_axes3_x = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t_2)
-        + rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
-        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
-        v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y -
-        rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z);
-    const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t) -
-        rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
-    const real rus_c_o_in_axes3_z = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) +
-        rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
-        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_z;
-    /* (rus-U) velocity and gravity terms of the leg force */
-    const real rus_U_x = -axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
-        axis_z_rus_axes3_x*rus_c_o_in_axes3_z - axis_x_rus_axes3_x*rus_c_o_in_axes3_x;
-    const real rus_U_y = -axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
-        axis_z_rus_axes3_y*rus_c_o_in_axes3_z - axis_x_rus_axes3_y*rus_c_o_in_axes3_x;
-    const real rus_U_z = -axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
-        axis_z_rus_axes3_z*rus_c_o_in_axes3_z - axis_x_rus_axes3_z*rus_c_o_in_axes3_x;
+    stage_rus_V_X(m, w, i, j, V, &v);
+    stage_rus_Z_dynamics(m, i, &v);
     /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, rus_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, rus_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, rus_U_z);  /* Z_t_z_of_legs */
-    o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(v.rus_v_1_t_2) > TOLERANCE*m->rus_size[i]);
-    o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    gather(&terms[0*count + k], add, v.rus_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.rus_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.rus_U_z);  /* Z_t_z_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
-INLINE void Z_place_rus(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_rus(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
+    *t)
 {
     /* (Z_t) */
     const real Z_t_x_of_legs = sums[0*w + k];
@@ -2272,7 +1916,7 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += Z_t_x + (Z_t_y + Z_t_z);
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
     real sums[3] = {0};
     real terms_rus[3*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
@@ -2288,8 +1932,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(m, 1, 0, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
     real sums[3*LANES];
     real o_rus[2*LANES];
@@ -2313,21 +1957,21 @@ INLINE void H_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rus v;
     stage_rus_X(m, w, i, j, X, &v);
-    stage_rus_H_condition(&v);
     /* (rus-w_1) reciprocal vector 1 */
     o[0*count + k] = -v.rus_w_1_t_7;
     o[1*count + k] = -v.rus_w_1_t_8;
     o[2*count + k] = -v.rus_w_1_t_9;
     o[5*count + k] = v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9);
-    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
-    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void H_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2337,7 +1981,7 @@ INLINE void H_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[5*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
@@ -2348,7 +1992,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
     real o_rus[6*LANES];
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
@@ -2385,7 +2030,10 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_rus v;
     stage_rus_X(m, w, i, j, X, &v);
-    stage_rus_legs_required(m, w, i, j, V, A, &v);
+    stage_rus_A_X(w, j, A, &v);
+    stage_rus_V_X(m, w, i, j, V, &v);
+    stage_rus_A_V_X(m, i, &v);
+    stage_rus_legs_required(m, i, &v);
     /* (rus-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real rus_c_x = v.axis_y_rus_axes3_x*v.rus_c_in_axes3_y +
@@ -2402,15 +2050,16 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     o[0*count + k] = -v.rus_w_1_t_7;
     o[1*count + k] = -v.rus_w_1_t_8;
     o[2*count + k] = -v.rus_w_1_t_9;
-    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(v.rus_v_1_t_2) > TOLERANCE*m->rus_size[i]);
-    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void required_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2438,7 +2087,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
     real s[3] = {0}, sums[3] = {0};
     real terms_rus[3*LEGS(LEGS_OF_rus)] = {0}, o_rus[5*LEGS(LEGS_OF_rus)] = {0};
@@ -2456,7 +2105,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, verdict *restrict t)
+    real *restrict required, real *restrict H, status_flags *restrict t)
 {
     real s[3*LANES], sums[3*LANES];
     real o_rus[5*LANES];
@@ -2484,17 +2133,11 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t i, s
     values_rus v;
     stage_rus_X(m, w, i, j, X, &v);
     /* (rus-q_1) displacement of joint 1 */
-    const real rus_q_1 = angle(v.inv_rus_rho2_1*(v.rus_Kd_1*v.rus_Ks_1 +
-        v.rus_Kc_1*v.rus_root_1), v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_Kd_1 -
-        v.rus_Ks_1*v.rus_root_1));
+    const real rus_q_1 = angle(v.rus_s_1, v.rus_c_1);
     /* (rus-q_2) displacement of joint 2 */
-    const real rus_q_2 = angle(-v.inv_rus_rho2_2*v.rus_root_2*v.rus_xi_1_t,
-        v.inv_rus_rho2_2*v.rus_root_2*v.rus_x_2_in_axes1_x);
+    const real rus_q_2 = angle(-v.rus_s_2_t, v.rus_c_2);
     /* (rus-q_3) displacement of joint 3 */
-    const real rus_q_3 =
-        angle(-m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*(v.rus_S_x*m->rus_base_frame_xz[i]
-        + v.rus_S_y*m->rus_base_frame_yz[i] + v.rus_S_z*m->rus_base_frame_zz[i]),
-        m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*v.rus_root_2);
+    const real rus_q_3 = angle(-v.rus_e_1_in_axes3_x, v.rus_J_3_t_17);
     /* (rus-q_1) */
     o[0*count + k] = rus_q_1;
     /* (rus-q_2) */
@@ -2502,13 +2145,14 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t i, s
     /* (rus-q_3) */
     o[2*count + k] = rus_q_3;
     o[5*count + k] = rus_q_1 + (rus_q_2 + rus_q_3);
-    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
-    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
+    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void inverse_kinematics_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[3*i*w + k] = o[0*count + at];
     q[(1 + 3*i)*w + k] = o[1*count + at];
@@ -2518,7 +2162,7 @@ INLINE void inverse_kinematics_place_rus(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[5*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
@@ -2530,7 +2174,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
     real o_rus[6*LANES];
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
@@ -2549,58 +2193,24 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j
 {
     values_rus v;
     stage_rus_X(m, w, i, j, X, &v);
-    /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-    const real rus_v_1_t = v.rus_c_3*v.rus_r_1_in_axes3_z;
+    stage_rus_V_X(m, w, i, j, V, &v);
     /* (rus-qd_1) rate of joint 1 */
-    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_xy[i]*v.rus_qd_1_t_2;
-    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
-    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_xz[i]*v.rus_c_3 + m->rus_base_frame_xy[i]*v.rus_qd_1_t_6;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_yz[i]*v.rus_c_3 + m->rus_base_frame_yy[i]*v.rus_qd_1_t_6;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_zz[i]*v.rus_c_3 + m->rus_base_frame_zy[i]*v.rus_qd_1_t_6;
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real t_dot_z = V[2*w + j];
-    const real rus_qd_1_t_7 = (t_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-        axis_y_rus_axes3_z*axis_z_rus_axes3_y) +
-        t_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-        axis_y_rus_axes3_x*axis_z_rus_axes3_z) +
-        t_dot_z*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-        axis_y_rus_axes3_y*axis_z_rus_axes3_x))/rus_v_1_t;
+    o[0*count + k] = -v.rus_qd_1_t;
     /* (rus-qd_2) rate of joint 2 */
-    const real rus_qd_2_t = v.rus_c_2*v.rus_r_1_in_axes1_x + v.rus_r_1_t_2*v.rus_s_2_t;
-    const real rus_qd_2_t_2 = axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-        axis_z_rus_axes3_z*t_dot_z +
-        rus_qd_1_t_7*(v.rus_c_3*(v.rus_e_1_in_axes3_x*v.rus_r_1_in_axes1_z +
-        v.rus_c_3*rus_qd_2_t) + v.rus_e_1_in_axes3_x*(v.rus_e_1_in_axes3_x*rus_qd_2_t -
-        v.rus_c_3*v.rus_r_1_in_axes1_z));
-    const real rus_qd_2 = rus_qd_2_t_2/v.rus_r_1_t;
+    o[1*count + k] = v.rus_qd_2;
     /* (rus-qd_3) rate of joint 3 */
-    const real rus_qd_3 = m->rus_w_3_in_axes3_y[i]*(axis_y_rus_axes3_x*t_dot_x +
-        axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z -
-        v.rus_e_1_in_axes3_x*rus_qd_1_t_7*v.rus_r_1_in_axes3_z);
-    /* (rus-qd_1) */
-    o[0*count + k] = -rus_qd_1_t_7;
-    /* (rus-qd_2) */
-    o[1*count + k] = rus_qd_2;
-    /* (rus-qd_3) */
-    o[2*count + k] = rus_qd_3;
-    o[5*count + k] = rus_qd_1_t_7 + (rus_qd_2 + rus_qd_3);
-    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(rus_v_1_t) > TOLERANCE*m->rus_size[i]);
-    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[2*count + k] = v.rus_qd_3;
+    o[5*count + k] = v.rus_qd_1_t + (v.rus_qd_2 + v.rus_qd_3);
+    o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void joint_rates_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[3*i*w + k] = o[0*count + at];
     qd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -2610,7 +2220,8 @@ INLINE void joint_rates_place_rus(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[5*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
@@ -2622,7 +2233,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
     real o_rus[6*LANES];
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
@@ -2641,89 +2252,26 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, 
 {
     values_rus v;
     stage_rus_X(m, w, i, j, X, &v);
-    /* (rus-qd_1) rate of joint 1 */
-    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_xy[i]*v.rus_qd_1_t_2;
-    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
-    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_xz[i]*v.rus_c_3 + m->rus_base_frame_xy[i]*v.rus_qd_1_t_6;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_yz[i]*v.rus_c_3 + m->rus_base_frame_yy[i]*v.rus_qd_1_t_6;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_zz[i]*v.rus_c_3 + m->rus_base_frame_zy[i]*v.rus_qd_1_t_6;
-    const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-        axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-    const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-        axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-    const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-        axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real t_dot_z = V[2*w + j];
-    const real rus_qd_1_t_7 = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
-        axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-    /* (rus-qd_3) rate of joint 3 */
-    const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
-        axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t_7*v.rus_v_1_in_axes3_y;
-    const real rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
-    /* (rus-omega_1) angular velocity of link 1 */
-    const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t_7;
-    const real rus_omega_1_in_axes3_y = v.rus_c_3*rus_qd_1_t_7;
-    /* (rus-omega_2) angular velocity of link 2 */
-    const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x +
-        axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
-        rus_qd_1_t_7*v.rus_v_1_in_axes3_z) - rus_qd_1_t_7;
-    const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-    const real rus_omega_2_in_axes3_y = -v.rus_c_3*rus_omega_2_in_axes2_z;
-    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
-        v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
-    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
-        - rus_bias_t_2*rus_omega_1_in_axes3_y;
-    const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
-        rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
-        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
-        rus_omega_2_in_axes3_x*m->rus_platform_joint_offset_x[i]*rus_qd_3;
-    /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-    const real t_ddot_x = A[0*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real t_ddot_z = A[2*w + j];
-    const real rus_rel_in_axes3_x = axis_x_rus_axes3_x*t_ddot_x + axis_x_rus_axes3_y*t_ddot_y
-        + axis_x_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_x;
-    const real rus_rel_in_axes3_y = axis_y_rus_axes3_x*t_ddot_x + axis_y_rus_axes3_y*t_ddot_y
-        + axis_y_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_y;
-    const real rus_rel_in_axes3_z = axis_z_rus_axes3_x*t_ddot_x + axis_z_rus_axes3_y*t_ddot_y
-        + axis_z_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_z;
+    stage_rus_A_X(w, j, A, &v);
+    stage_rus_V_X(m, w, i, j, V, &v);
+    stage_rus_A_V_X(m, i, &v);
     /* (rus-qdd_1) acceleration of joint 1 */
-    const real rus_qdd_1_t = v.inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+    o[0*count + k] = -v.rus_qdd_1_t;
     /* (rus-qdd_2) acceleration of joint 2 */
-    const real rus_qdd_2 = v.rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
-        rus_qdd_1_t*v.rus_v_1_in_axes3_z);
+    o[1*count + k] = v.rus_qdd_2;
     /* (rus-qdd_3) acceleration of joint 3 */
-    const real rus_qdd_3_t = m->rus_w_3_in_axes3_y[i]*(-rus_rel_in_axes3_y -
-        rus_qdd_1_t*v.rus_v_1_in_axes3_y);
-    /* (rus-qdd_1) */
-    o[0*count + k] = -rus_qdd_1_t;
-    /* (rus-qdd_2) */
-    o[1*count + k] = rus_qdd_2;
-    /* (rus-qdd_3) */
-    o[2*count + k] = -rus_qdd_3_t;
-    o[5*count + k] = rus_qdd_1_t + (rus_qdd_2 + rus_qdd_3_t);
-    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(v.rus_v_1_t_2) > TOLERANCE*m->rus_size[i]);
-    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[2*count + k] = -v.rus_qdd_3_t;
+    o[5*count + k] = v.rus_qdd_1_t + (v.rus_qdd_2 + v.rus_qdd_3_t);
+    o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void joint_accelerations_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[3*i*w + k] = o[0*count + at];
     qdd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -2734,7 +2282,7 @@ INLINE void joint_accelerations_place_rus(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
@@ -2746,7 +2294,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
     real o_rus[6*LANES];
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
@@ -2765,7 +2313,10 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_
 {
     values_rus v;
     stage_rus_X(m, w, i, j, X, &v);
-    stage_rus_legs_required(m, w, i, j, V, A, &v);
+    stage_rus_A_X(w, j, A, &v);
+    stage_rus_V_X(m, w, i, j, V, &v);
+    stage_rus_A_V_X(m, i, &v);
+    stage_rus_legs_required(m, i, &v);
     /* (rus-c_true) leg force on the platform without actuation, the last link's mass included */
     const real rus_c_true_in_axes3_x = v.rus_c_in_axes3_x -
         v.rus_acc_3_in_axes3_x*m->rus_link3_mass[i];
@@ -2790,15 +2341,16 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_
     o[3*count + k] = -v.rus_w_1_t_7;
     o[4*count + k] = -v.rus_w_1_t_8;
     o[5*count + k] = -v.rus_w_1_t_9;
-    o[7*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(v.rus_v_1_t_2) > TOLERANCE*m->rus_size[i]);
-    o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void legs_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[3*i*w + k] = o[0*count + at];
     leg_force[(3*i + 1)*w + k] = o[1*count + at];
@@ -2811,7 +2363,7 @@ INLINE void legs_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     real o_rus[8*LEGS(LEGS_OF_rus)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
@@ -2841,27 +2393,25 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
     values_rus v;
     stage_rus_X(m, w, i, j, X, &v);
     /* (potential) */
-    const real rus_potential_t_4 = v.rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i] -
-        v.rus_c_3*m->rus_h_3_in_spec3_x[i];
-    const real rus_potential_t_5 = m->rus_g_in_axes1_z[i]*(m->rus_h_1_in_spec1_z[i] +
+    const real rus_potential_t_4 = m->rus_g_in_axes1_z[i]*(m->rus_h_1_in_spec1_z[i] +
         m->rus_potential_t_3[i] + v.rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_x[i] +
-        v.rus_c_3*m->rus_h_3_in_spec3_z[i]) + (v.rus_c_1*m->rus_mu_1_t[i] +
-        m->rus_mu_1_t_2[i]*v.rus_s_1)*(m->rus_h_1_in_spec1_x[i] +
+        v.rus_J_3_t_17*m->rus_h_3_in_spec3_z[i]) +
+        v.rus_g_in_axes1_x*(m->rus_h_1_in_spec1_x[i] +
         m->rus_link1_mass[i]*(v.rus_c_1*m->rus_potential_t[i] +
         m->rus_potential_t_2[i]*v.rus_s_1) + m->rus_h_3_in_spec3_y[i]*v.rus_s_2_t -
-        v.rus_c_2*rus_potential_t_4) + (v.rus_c_1*m->rus_mu_1_t_2[i] -
-        m->rus_mu_1_t[i]*v.rus_s_1)*(m->rus_h_1_in_spec1_y[i] +
+        v.rus_c_2*v.rus_d_Gamma_2_t_2) + v.rus_g_in_axes1_y*(m->rus_h_1_in_spec1_y[i] +
         m->rus_link1_mass[i]*(v.rus_c_1*m->rus_potential_t_2[i] -
         m->rus_potential_t[i]*v.rus_s_1) + v.rus_c_2*m->rus_h_3_in_spec3_y[i] +
-        rus_potential_t_4*v.rus_s_2_t);
+        v.rus_d_Gamma_2_t_2*v.rus_s_2_t);
     /* (potential) */
-    gather(&terms[0*count + k], add, rus_potential_t_5);  /* potential_of_legs */
-    o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
-    o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    gather(&terms[0*count + k], add, rus_potential_t_4);  /* potential_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
+    o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
-INLINE void potential_place_rus(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_rus(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -2877,7 +2427,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
     real s[1] = {0}, sums[1] = {0};
     real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
@@ -2895,7 +2445,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, status_flags
+    *t)
 {
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
@@ -2907,13 +2458,12 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rus v;
     stage_rus_X(m, w, i, j, X, &v);
-    stage_rus_H_condition(&v);
     /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real rus_pivot_size = magnitude(v.rus_rho2_1);
-    const real rus_pivot_size_2 = magnitude(v.rus_rho2_2);
+    const real rus_pivot_size = magnitude(v.rus_J_3_t_10);
+    const real rus_pivot_size_2 = magnitude(v.rus_J_3_t_15);
     const real rus_pivot_size_3 = magnitude(v.rus_r_1_t);
-    const real rus_pivot_size_4 = magnitude(v.rus_v_1_t);
+    const real rus_pivot_size_4 = magnitude(v.rus_v_1_t_2);
     const real rus_least_pivots =
         lesser(lesser(lesser(root(m->inv_rus_rho2_1_t[i]*rus_pivot_size),
         m->inv_rus_size[i]*rus_pivot_size_3), m->inv_rus_size[i]*rus_pivot_size_4),
@@ -2932,18 +2482,19 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
     o[2*count + k] = -v.rus_w_1_t_9;
     /* (rus-G) */
     o[3*count + k] = rus_least_pivots;
-    o[4*count + k] = v.rus_disc_1;
+    o[4*count + k] = v.rus_J_3_t_11;
     o[7*count + k] = (v.rus_w_1_t_7 + v.rus_w_1_t_8) + (v.rus_w_1_t_9 + (rus_least_pivots +
-        v.rus_disc_1));
-    o[6*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
-    o[5*count + k] = UNLESS(v.rus_disc_1 >= 0);
+        v.rus_J_3_t_11));
+    o[6*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[5*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void condition_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *pivots, real *reach, verdict *t)
+    *o, real *H, real *pivots, real *reach, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2956,7 +2507,7 @@ INLINE void condition_place_rus(size_t w, size_t i, size_t k, size_t at, size_t 
 }
 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
-    *lengths, verdict *t)
+    *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_rus = sums[0*w + k];
@@ -2967,7 +2518,7 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
     real sums[1] = {0};
     real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[8*LEGS(LEGS_OF_rus)] = {0};
@@ -2988,196 +2539,179 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int delta_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int delta_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int delta_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int delta_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int delta_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int delta_joint_accelerations(const prepared *m, const real *X, const real *V, const real *A, real
     *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int delta_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real *Z_out, real
     *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -3236,14 +2770,9 @@ int delta_inverse_dynamics(const prepared *m, const real *X, const real *V, cons
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -3258,7 +2787,7 @@ int delta_inverse_dynamics(const prepared *m, const real *X, const real *V, cons
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    return settled(&why, NU, tau_out);
+    return final_status(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -3266,7 +2795,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3277,8 +2806,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_3(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
 }
 
 static const size_t order_A[] = {0, 1, 2};
@@ -3290,14 +2819,9 @@ int delta_forward_dynamics(const prepared *m, const real *X, const real *V, cons
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
         subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -3316,7 +2840,7 @@ int delta_forward_dynamics(const prepared *m, const real *X, const real *V, cons
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -3325,7 +2849,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
         A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3340,8 +2864,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_3(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int delta_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
@@ -3351,13 +2875,11 @@ int delta_complete_acceleration(const prepared *m, const real *X, const real *V,
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int delta_leg_reactions(const prepared *m, const real *X, const real *V, const real *A, const real
@@ -3365,49 +2887,27 @@ int delta_leg_reactions(const prepared *m, const real *X, const real *V, const r
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
-        unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0},
-        work[NV*PADDED(NV)];
-    verdict why;
+    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, &why);
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - wrench[i];
-    }
-    eliminate_3(1, NV, order_tau, sizes_tau, H, subtract_1, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NV, 1, H, work);
-        solve_apart(NV, subtract_1, work, solve_1, why.singular);
-        check(NV, 1, solve_1, why.overflow);
-    }
+    flag_status(delta_inverse_dynamics(m, X, V, A, wrench, solve_1), &why);
     legs_run(m, X, V, A, leg_force, actuator, &why);
     for (size_t i = 0; i < NL*NL; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
-    check(NL*NL, 1, forces, why.overflow);
-    copy(NL*NL, forces, forces_out);
-    return settled(&why, NL*NL, forces_out);
+    return finished(NL*NL, forces, forces_out, &why);
 }
 
 int delta_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -3416,16 +2916,16 @@ int delta_energy(const prepared *m, const real *X, const real *V, real *kinetic_
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int delta_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, reach[NL] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, legs_out, reach, &why);
     singular_values(NV, NU, H, sigma);
     if (!is_finite(why.total[0])) {
@@ -3435,17 +2935,17 @@ int delta_condition(const prepared *m, const real *X, real *sigma_out, real *leg
     check(2, 1, lengths, why.overflow);
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int delta_manipulability(const prepared *m, const real *X, real *measure_out, real *isotropy_out)
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
         {0}, measure[1] = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
     singular_values(NV, NU, H, singular_values_1);
     spread(NV, singular_values_1, measure, isotropy);
@@ -3456,8 +2956,8 @@ int delta_manipulability(const prepared *m, const real *X, real *measure_out, re
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int delta_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -3465,9 +2965,9 @@ int delta_singularity_distance(const prepared *m, const real *X, real *actuators
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
         {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
     singular_values(NV, NU, H, singular_values_1);
     spread(NV, singular_values_1, spread_1, actuators);
@@ -3478,57 +2978,53 @@ int delta_singularity_distance(const prepared *m, const real *X, real *actuators
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    static const size_t places_gap[] = {0, 1, 2};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
-    verdict why;
+    static const size_t places_residual[] = {0, 1, 2};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] = {0}, residual[NU] =
+        {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(3, 1, delta_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
         subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = subtract_1[i];
+        residual[i] = subtract_1[i];
     }
-    wrap_turns(NU, 1, places_gap, gap);
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    wrap_turns(NU, 1, places_residual, residual);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -3540,21 +3036,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -3568,17 +3064,11 @@ int delta_forward_kinematics(const prepared *m, const real *q_actuated, const re
     *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int delta_dissipation(const prepared *m, const real *X, const real *V, real *dissipation_out)
@@ -3586,182 +3076,133 @@ int delta_dissipation(const prepared *m, const real *X, const real *V, real *dis
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int delta_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int delta_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int delta_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int delta_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, delta_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int delta_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, delta_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int delta_actuator_accelerations(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, delta_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int delta_power(const prepared *m, const real *X, const real *V, const real *tau, real *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int delta_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
+    check_two(NQ, X, NV, step, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int delta_difference(const real *X0, const real *X1, real *step_out)
 {
     real step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
+    check_two(NQ, X0, NQ, X1, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         step[i] = X1[i] - X0[i];
     }
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int delta_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real subtract_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -3771,9 +3212,7 @@ int delta_interpolate(const real *X0, const real *X1, const real *s, real *X_out
     for (size_t i = 0; i < NQ; ++i) {
         X[i] = X0[i] + scale_1[i];
     }
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

@@ -135,7 +135,7 @@ extern const char *const delta_ACTUATOR_NAMES[DELTA_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int delta_prepare(const delta_params *params, delta_model *model);
 
-/* Inertia matrix M. 516 mul, 324 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 513 mul, 321 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int delta_M(const delta_model *model, const delta_real *X, delta_real *M);
 size_t delta_M_batch(const delta_model *model, size_t n, const delta_real *X, delta_real *M, int
     *status);
@@ -158,7 +158,7 @@ int delta_inverse_kinematics(const delta_model *model, const delta_real *X, delt
 size_t delta_inverse_kinematics_batch(const delta_model *model, size_t n, const delta_real *X,
     delta_real *q, int *status);
 
-/* Rates of all joints. 297 mul, 156 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 303 mul, 156 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int delta_joint_rates(const delta_model *model, const delta_real *X, const delta_real *V,
     delta_real *rates);
@@ -172,7 +172,7 @@ int delta_joint_accelerations(const delta_model *model, const delta_real *X, con
 size_t delta_joint_accelerations_batch(const delta_model *model, size_t n, const delta_real *X,
     const delta_real *V, const delta_real *A, delta_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 858 mul, 570 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 855 mul, 567 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int delta_dynamics(const delta_model *model, const delta_real *X, const delta_real *V, delta_real
     *M, delta_real *Z, delta_real *H);
@@ -187,7 +187,7 @@ int delta_inverse_dynamics(const delta_model *model, const delta_real *X, const 
 size_t delta_inverse_dynamics_batch(const delta_model *model, size_t n, const delta_real *X, const
     delta_real *V, const delta_real *A, const delta_real *wrench, delta_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 858 mul, 570 add, 12 div, 6 sqrt,
+/* Acceleration A under the actuator forces tau and the wrench. 855 mul, 567 add, 12 div, 6 sqrt,
    0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW,
    or NULL). Out: A (NV). */
 int delta_forward_dynamics(const delta_model *model, const delta_real *X, const delta_real *V,
@@ -260,7 +260,7 @@ int delta_dissipation(const delta_model *model, const delta_real *X, const delta
 size_t delta_dissipation_batch(const delta_model *model, size_t n, const delta_real *X, const
     delta_real *V, delta_real *dissipation, int *status);
 
-/* Generalised momentum M V. 516 mul, 324 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 513 mul, 321 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int delta_momentum(const delta_model *model, const delta_real *X, const delta_real *V, delta_real
     *momentum);
@@ -285,7 +285,7 @@ int delta_actuator_positions(const delta_model *model, const delta_real *X, delt
 size_t delta_actuator_positions_batch(const delta_model *model, size_t n, const delta_real *X,
     delta_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 297 mul, 156 add, 12 div, 6 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 303 mul, 156 add, 12 div, 6 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int delta_actuator_rates(const delta_model *model, const delta_real *X, const delta_real *V,
     delta_real *rates);

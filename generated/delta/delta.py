@@ -1461,11 +1461,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1665,8 +1665,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1674,7 +1674,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1682,11 +1682,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1708,7 +1708,7 @@ def _at(m, function, X, given, at):
     return found
 
 
-# dynamics: 858 mul, 570 add, 12 div, 6 sqrt, 0 trig
+# dynamics: 855 mul, 567 add, 12 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
@@ -1853,6 +1853,11 @@ def _run_dynamics(m, X, V):
         inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
+        # (rus-qd_2) rate of joint 2
+        rus_qd_2 = (
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z)
+        )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z +
@@ -1863,10 +1868,7 @@ def _run_dynamics(m, X, V):
         rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
         rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z) - rus_qd_1_t
-        )
+        rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
         rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
@@ -1904,7 +1906,6 @@ def _run_dynamics(m, X, V):
         rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x
         rus_alpha_2_o_in_axes3_y = -rus_J_3_t_17*rus_alpha_2_o_in_axes2_z
         # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z
         rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z
         # (rus-alpha_3_o) remainder of: angular acceleration of link 3
         rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x
@@ -1914,10 +1915,7 @@ def _run_dynamics(m, X, V):
         rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o
         rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y
         rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x
-        # (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
-        rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
-        rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3
+        # (rus-acc_3) acceleration of the reference point of link 3, less gravity
         rus_g_in_axes3_x = (
         axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y + axis_x_rus_axes3_z*gravity_z
         )
@@ -1927,26 +1925,32 @@ def _run_dynamics(m, X, V):
         rus_g_in_axes3_z = (
         axis_z_rus_axes3_x*gravity_x + axis_z_rus_axes3_y*gravity_y + axis_z_rus_axes3_z*gravity_z
         )
+        # (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
+        rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
+        rus_mu_3_t_3 = rus_qd_3*rus_qd_3
+        rus_mu_3_t_4 = rus_J_3_in_spec3_yz*(rus_mu_3_t_2 - rus_mu_3_t_3)
+        rus_mu_3_t_5 = rus_J_3_in_spec3_xy*(rus_mu_3_t - rus_mu_3_t_3)
+        rus_mu_3_t_6 = rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2)
+        # (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         rus_mu_3_o_in_axes3_x = (
         rus_B_3_o_in_axes3_yx*rus_J_3_in_spec3_xy + rus_B_3_o_in_axes3_zx*rus_J_3_in_spec3_xz +
             rus_B_3_o_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
             rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x + rus_g_in_axes3_y*rus_h_3_in_spec3_y
-            + rus_g_in_axes3_z*rus_h_3_in_spec3_z - rus_J_3_in_spec3_yz*(rus_mu_3_o_t_2 -
-            rus_mu_3_o_t_3)
+            + rus_g_in_axes3_z*rus_h_3_in_spec3_z - rus_mu_3_t_4
         )
         rus_mu_3_o_in_axes3_y = (
         rus_B_3_o_in_axes3_xy*rus_J_3_in_spec3_yz +
             rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_y + rus_g_in_axes3_z*rus_h_3_in_spec3_x
-            - rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
-            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_o_t -
-            rus_mu_3_o_t_3) - rus_g_in_axes3_x*rus_h_3_in_spec3_y
+            - rus_mu_3_t_5 - rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
+            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_g_in_axes3_x*rus_h_3_in_spec3_y
         )
         rus_mu_3_o_in_axes3_z = (
         rus_B_3_o_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
-            rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x -
-            rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
-            rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y -
-            rus_g_in_axes3_x*rus_h_3_in_spec3_z - rus_g_in_axes3_y*rus_h_3_in_spec3_x
+            rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x - rus_mu_3_t_6 -
+            rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy -
+            rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y - rus_g_in_axes3_x*rus_h_3_in_spec3_z -
+            rus_g_in_axes3_y*rus_h_3_in_spec3_x
         )
         rus_mu_3_o_in_axes1_z = (
         rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x - rus_J_3_t_17*rus_mu_3_o_in_axes3_y
@@ -1959,34 +1963,41 @@ def _run_dynamics(m, X, V):
         )
         # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rus_d_Gamma_2_t = rus_J_3_t_17*rus_h_3_in_spec3_y
-        rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
-        rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
-        rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z
-        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_y
+        rus_d_Gamma_2_t_2 = (
+        rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_J_3_t_17*rus_h_3_in_spec3_x
+        )
+        rus_d_Gamma_2_t_3 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
+        rus_d_Gamma_2_t_4 = rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
+        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_z
+        rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*rus_v_1_in_axes3_y
         rus_d_Gamma_2_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 + rus_d_Gamma_2_t_5 - rus_J_3_in_axes1_zz) -
+        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_3_in_axes1_zz) -
             rus_d_Gamma_2_t
         )
-        rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
-        rus_d_Gamma_2_in_axes3_z = (
-        rus_d_Gamma_2_t_2 + rus_J_3_t_17*rus_h_3_in_spec3_x -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z
-        )
+        rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_4 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
+        rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_3 - rus_d_Gamma_2_t_2
+        # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
+        rus_g_in_axes1_y = rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1
+        rus_mu_1_t_3 = rus_g_in_axes1_y*rus_h_1_in_spec1_x - rus_g_in_axes1_x*rus_h_1_in_spec1_y
         # (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rus_mu_1_o_in_axes1_z = (
-        rus_J_1_in_spec1_zz*rus_qdd_1_o + rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
-            rus_mu_1_t_2*rus_s_1) - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1)
-        )
+        rus_mu_1_o_in_axes1_z = rus_J_1_in_spec1_zz*rus_qdd_1_o - rus_mu_1_t_3
         # (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z
         # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rus_d_Gamma_1_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 + rus_d_Gamma_2_t_5 - rus_J_1_in_spec1_zz -
+        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_1_in_spec1_zz -
             rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t
         )
+        # (rus-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        rus_d_G_in_axes3_zy = rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_z
         # (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y
+        # (rus-c) leg force on the platform without actuation and without the mass at the connection point
+        rus_c_t = rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3)
+        rus_c_t_2 = rus_h_3_in_spec3_z*(rus_mu_3_t + rus_mu_3_t_3)
+        rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rus_d_c_in_axes3_xx = (
         inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
@@ -2004,66 +2015,62 @@ def _run_dynamics(m, X, V):
             rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
             rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x
         )
-        rus_d_c_in_axes3_yz = (
-        rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y - rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y
-        )
         # (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rus_c_o_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*rus_v_1_in_axes3_y -
-            rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 + rus_mu_3_o_t_3) -
+        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*rus_v_1_in_axes3_y -
+            rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y
         )
         rus_c_o_in_axes3_y = (
-        rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y - rus_G_o_in_axes3_y -
-            rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_o_t +
-            rus_mu_3_o_t_3)
+        rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y - rus_G_o_in_axes3_y - rus_c_t_2 -
+            rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x
         )
         rus_c_o_in_axes3_z = (
-        rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_y*(rus_mu_3_o_t +
-            rus_mu_3_o_t_2) - rus_G_o_in_axes3_z - rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x
+        rus_c_t_3 + rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z - rus_G_o_in_axes3_z -
+            rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x
         )
         # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
         rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
         rus_Q_t_2 = 0.5*rus_Q_t
         rus_Q_t_3 = (
         rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z +
-            rus_d_alpha_3_t*rus_h_3_in_spec3_x - rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z
+            rus_d_alpha_3_t*rus_h_3_in_spec3_x -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z*rus_w_2_in_axes3_z
         )
         rus_Q_t_4 = 0.5*rus_Q_t_3
         rus_Q_t_5 = (
-        axis_x_rus_axes3_x*rus_d_c_in_axes3_xy + axis_z_rus_axes3_x*rus_d_c_in_axes3_yz -
-            axis_y_rus_axes3_x*rus_Q_t_2
+        axis_y_rus_axes3_x*rus_Q_t_2 + axis_z_rus_axes3_x*rus_d_G_in_axes3_zy -
+            axis_x_rus_axes3_x*rus_d_c_in_axes3_xy
         )
         rus_Q_t_6 = (
-        axis_x_rus_axes3_y*rus_d_c_in_axes3_xy + axis_z_rus_axes3_y*rus_d_c_in_axes3_yz -
-            axis_y_rus_axes3_y*rus_Q_t_2
+        axis_y_rus_axes3_y*rus_Q_t_2 + axis_z_rus_axes3_y*rus_d_G_in_axes3_zy -
+            axis_x_rus_axes3_y*rus_d_c_in_axes3_xy
         )
         rus_Q_t_7 = (
-        axis_x_rus_axes3_z*rus_d_c_in_axes3_xy + axis_z_rus_axes3_z*rus_d_c_in_axes3_yz -
-            axis_y_rus_axes3_z*rus_Q_t_2
+        axis_y_rus_axes3_z*rus_Q_t_2 + axis_z_rus_axes3_z*rus_d_G_in_axes3_zy -
+            axis_x_rus_axes3_z*rus_d_c_in_axes3_xy
         )
         rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 - axis_x_rus_axes3_x*rus_d_c_in_axes3_xz
         rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 - axis_x_rus_axes3_y*rus_d_c_in_axes3_xz
         rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 - axis_x_rus_axes3_z*rus_d_c_in_axes3_xz
-        rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 - axis_z_rus_axes3_x*rus_Q_t_8
-        rus_Q_xx = -2.0*rus_Q_t_11 - rus_d_c_in_axes3_xx
+        rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_8
+        rus_Q_xx = 2.0*rus_Q_t_11 - rus_d_c_in_axes3_xx
         rus_Q_xy = (
-        axis_z_rus_axes3_x*rus_Q_t_9 + axis_z_rus_axes3_y*rus_Q_t_8 - axis_y_rus_axes3_x*rus_Q_t_6
-            - axis_y_rus_axes3_y*rus_Q_t_5
+        axis_y_rus_axes3_x*rus_Q_t_6 + axis_y_rus_axes3_y*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_9
+            + axis_z_rus_axes3_y*rus_Q_t_8
         )
         rus_Q_xz = (
-        axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8 -
-            axis_y_rus_axes3_x*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_5
+        axis_y_rus_axes3_x*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_5 +
+            axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8
         )
-        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 - axis_z_rus_axes3_y*rus_Q_t_9
-        rus_Q_yy = -2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
+        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 + axis_z_rus_axes3_y*rus_Q_t_9
+        rus_Q_yy = 2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
         rus_Q_yz = (
-        axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9 -
-            axis_y_rus_axes3_y*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_6
+        axis_y_rus_axes3_y*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_6 +
+            axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9
         )
-        rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 - axis_z_rus_axes3_z*rus_Q_t_10
-        rus_Q_zz = -2.0*rus_Q_t_13 - rus_d_c_in_axes3_xx
+        rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 + axis_z_rus_axes3_z*rus_Q_t_10
+        rus_Q_zz = 2.0*rus_Q_t_13 - rus_d_c_in_axes3_xx
         # (rus-U) velocity and gravity terms of the leg force
         rus_U_x = (
         -axis_x_rus_axes3_x*rus_c_o_in_axes3_x - axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
@@ -2122,7 +2129,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 516 mul, 324 add, 12 div, 6 sqrt, 0 trig
+# M: 513 mul, 321 add, 12 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2209,6 +2216,36 @@ def _run_M(m, X):
             rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
+        rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
+        rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
+        rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
+        rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
+        axis_y_rus_axes3_x = (
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
+        )
+        axis_y_rus_axes3_y = (
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
+        )
+        axis_y_rus_axes3_z = (
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
+        )
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
+        )
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
+        )
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
+        )
         inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
         # (rus-w_2) reciprocal vector 2
         rus_w_2_in_axes3_z = 1.0/rus_r_1_t
@@ -2216,7 +2253,6 @@ def _run_M(m, X):
         # (rus-w_3) reciprocal vector 3
         rus_w_3_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_y*rus_w_3_in_axes3_y
         # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z
         rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z
         # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z
@@ -2226,24 +2262,26 @@ def _run_M(m, X):
         )
         # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rus_d_Gamma_2_t = rus_J_3_t_17*rus_h_3_in_spec3_y
-        rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
-        rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
-        rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z
-        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_y
+        rus_d_Gamma_2_t_2 = (
+        rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_J_3_t_17*rus_h_3_in_spec3_x
+        )
+        rus_d_Gamma_2_t_3 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
+        rus_d_Gamma_2_t_4 = rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
+        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_z
+        rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*rus_v_1_in_axes3_y
         rus_d_Gamma_2_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 + rus_d_Gamma_2_t_5 - rus_J_3_in_axes1_zz) -
+        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_3_in_axes1_zz) -
             rus_d_Gamma_2_t
         )
-        rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
-        rus_d_Gamma_2_in_axes3_z = (
-        rus_d_Gamma_2_t_2 + rus_J_3_t_17*rus_h_3_in_spec3_x -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z
-        )
+        rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_4 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
+        rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_3 - rus_d_Gamma_2_t_2
         # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rus_d_Gamma_1_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 + rus_d_Gamma_2_t_5 - rus_J_1_in_spec1_zz -
+        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_1_in_spec1_zz -
             rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t
         )
+        # (rus-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        rus_d_G_in_axes3_zy = rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_z
         # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rus_d_c_in_axes3_xx = (
         inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
@@ -2261,77 +2299,48 @@ def _run_M(m, X):
             rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
             rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x
         )
-        rus_d_c_in_axes3_yz = (
-        rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y - rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y
-        )
         # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
-        rus_Q_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
-        rus_Q_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
-        axis_z_rus_axes3_x = rus_Q_t*rus_base_frame_xx + rus_Q_t_2*rus_base_frame_xy
-        axis_z_rus_axes3_y = rus_Q_t*rus_base_frame_yx + rus_Q_t_2*rus_base_frame_yy
-        axis_z_rus_axes3_z = rus_Q_t*rus_base_frame_zx + rus_Q_t_2*rus_base_frame_zy
-        rus_Q_t_3 = rus_c_2*rus_e_1_in_axes3_x
-        rus_Q_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
-        rus_Q_t_5 = rus_Q_t_3*rus_c_1 + rus_Q_t_4*rus_s_1
-        rus_Q_t_6 = rus_Q_t_3*rus_s_1 - rus_Q_t_4*rus_c_1
-        axis_y_rus_axes3_x = (
-        rus_Q_t_5*rus_base_frame_xx + rus_Q_t_6*rus_base_frame_xy - rus_J_3_t_17*rus_base_frame_xz
-        )
-        axis_y_rus_axes3_y = (
-        rus_Q_t_5*rus_base_frame_yx + rus_Q_t_6*rus_base_frame_yy - rus_J_3_t_17*rus_base_frame_yz
-        )
-        axis_y_rus_axes3_z = (
-        rus_Q_t_5*rus_base_frame_zx + rus_Q_t_6*rus_base_frame_zy - rus_J_3_t_17*rus_base_frame_zz
-        )
-        axis_x_rus_axes3_x = (
-        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
-        )
-        axis_x_rus_axes3_y = (
-        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
-        )
-        axis_x_rus_axes3_z = (
-        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
-        )
-        rus_Q_t_7 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
-        rus_Q_t_8 = 0.5*rus_Q_t_7
-        rus_Q_t_9 = (
+        rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
+        rus_Q_t_2 = 0.5*rus_Q_t
+        rus_Q_t_3 = (
         rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z +
-            rus_d_alpha_3_t*rus_h_3_in_spec3_x - rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z
+            rus_d_alpha_3_t*rus_h_3_in_spec3_x -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z*rus_w_2_in_axes3_z
         )
-        rus_Q_t_10 = 0.5*rus_Q_t_9
-        rus_Q_t_11 = (
-        axis_x_rus_axes3_x*rus_d_c_in_axes3_xy + axis_z_rus_axes3_x*rus_d_c_in_axes3_yz -
-            axis_y_rus_axes3_x*rus_Q_t_8
+        rus_Q_t_4 = 0.5*rus_Q_t_3
+        rus_Q_t_5 = (
+        axis_y_rus_axes3_x*rus_Q_t_2 + axis_z_rus_axes3_x*rus_d_G_in_axes3_zy -
+            axis_x_rus_axes3_x*rus_d_c_in_axes3_xy
         )
-        rus_Q_t_12 = (
-        axis_x_rus_axes3_y*rus_d_c_in_axes3_xy + axis_z_rus_axes3_y*rus_d_c_in_axes3_yz -
-            axis_y_rus_axes3_y*rus_Q_t_8
+        rus_Q_t_6 = (
+        axis_y_rus_axes3_y*rus_Q_t_2 + axis_z_rus_axes3_y*rus_d_G_in_axes3_zy -
+            axis_x_rus_axes3_y*rus_d_c_in_axes3_xy
         )
-        rus_Q_t_13 = (
-        axis_x_rus_axes3_z*rus_d_c_in_axes3_xy + axis_z_rus_axes3_z*rus_d_c_in_axes3_yz -
-            axis_y_rus_axes3_z*rus_Q_t_8
+        rus_Q_t_7 = (
+        axis_y_rus_axes3_z*rus_Q_t_2 + axis_z_rus_axes3_z*rus_d_G_in_axes3_zy -
+            axis_x_rus_axes3_z*rus_d_c_in_axes3_xy
         )
-        rus_Q_t_14 = axis_z_rus_axes3_x*rus_Q_t_10 - axis_x_rus_axes3_x*rus_d_c_in_axes3_xz
-        rus_Q_t_15 = axis_z_rus_axes3_y*rus_Q_t_10 - axis_x_rus_axes3_y*rus_d_c_in_axes3_xz
-        rus_Q_t_16 = axis_z_rus_axes3_z*rus_Q_t_10 - axis_x_rus_axes3_z*rus_d_c_in_axes3_xz
-        rus_Q_t_17 = axis_y_rus_axes3_x*rus_Q_t_11 - axis_z_rus_axes3_x*rus_Q_t_14
-        rus_Q_xx = -2.0*rus_Q_t_17 - rus_d_c_in_axes3_xx
+        rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 - axis_x_rus_axes3_x*rus_d_c_in_axes3_xz
+        rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 - axis_x_rus_axes3_y*rus_d_c_in_axes3_xz
+        rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 - axis_x_rus_axes3_z*rus_d_c_in_axes3_xz
+        rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_8
+        rus_Q_xx = 2.0*rus_Q_t_11 - rus_d_c_in_axes3_xx
         rus_Q_xy = (
-        axis_z_rus_axes3_x*rus_Q_t_15 + axis_z_rus_axes3_y*rus_Q_t_14 -
-            axis_y_rus_axes3_x*rus_Q_t_12 - axis_y_rus_axes3_y*rus_Q_t_11
+        axis_y_rus_axes3_x*rus_Q_t_6 + axis_y_rus_axes3_y*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_9
+            + axis_z_rus_axes3_y*rus_Q_t_8
         )
         rus_Q_xz = (
-        axis_z_rus_axes3_x*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_14 -
-            axis_y_rus_axes3_x*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_11
+        axis_y_rus_axes3_x*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_5 +
+            axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8
         )
-        rus_Q_t_18 = axis_y_rus_axes3_y*rus_Q_t_12 - axis_z_rus_axes3_y*rus_Q_t_15
-        rus_Q_yy = -2.0*rus_Q_t_18 - rus_d_c_in_axes3_xx
+        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 + axis_z_rus_axes3_y*rus_Q_t_9
+        rus_Q_yy = 2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
         rus_Q_yz = (
-        axis_z_rus_axes3_y*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_15 -
-            axis_y_rus_axes3_y*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_12
+        axis_y_rus_axes3_y*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_6 +
+            axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9
         )
-        rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16
-        rus_Q_zz = -2.0*rus_Q_t_19 - rus_d_c_in_axes3_xx
+        rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 + axis_z_rus_axes3_z*rus_Q_t_10
+        rus_Q_zz = 2.0*rus_Q_t_13 - rus_d_c_in_axes3_xx
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
             & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
@@ -2396,92 +2405,77 @@ def _run_Z(m, X, V):
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
             rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,
         ) = k
-        # (rus-S) from the base point to the connection point
-        rus_S_x = rus_platform_point_x + t_x - rus_base_point_x
-        rus_S_y = rus_platform_point_y + t_y - rus_base_point_y
-        rus_S_z = rus_platform_point_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
-        # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
         rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
         rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
         rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
         rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
         rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
         rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_c_3*(rus_c_3*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
-        # (rus-qd_1) rate of joint 1
-        rus_qd_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
-        rus_qd_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
-        axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t + rus_base_frame_xy*rus_qd_1_t_2
-        axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t + rus_base_frame_yy*rus_qd_1_t_2
-        axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t + rus_base_frame_zy*rus_qd_1_t_2
-        rus_qd_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
-        rus_qd_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
-        rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1
-        rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4
+        rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
+        rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
+        rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
+        rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 -
-            rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 -
-            rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 -
-            rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -2492,26 +2486,32 @@ def _run_Z(m, X, V):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        rus_qd_1_t_7 = (
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        # (rus-w_2) reciprocal vector 2
+        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        # (rus-qd_1) rate of joint 1
+        rus_qd_1_t = (
         inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
+        )
+        # (rus-qd_2) rate of joint 2
+        rus_qd_2 = (
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z)
         )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z +
-            rus_qd_1_t_7*rus_v_1_in_axes3_y
+            rus_qd_1_t*rus_v_1_in_axes3_y
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t_7
-        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t_7
+        rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t_7*rus_v_1_in_axes3_z) - rus_qd_1_t_7
-        )
+        rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
@@ -2520,7 +2520,7 @@ def _run_Z(m, X, V):
         rus_bias_t = rus_c_2*rus_joint2_offset_x
         rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         rus_bias_t_2 = (
-        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y -
+        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
             rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
         )
         rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
@@ -2545,7 +2545,7 @@ def _run_Z(m, X, V):
         rus_qdd_1_o - rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*rus_v_1_in_axes3_z)
         )
         rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x
-        rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*rus_c_3
+        rus_alpha_2_o_in_axes3_y = -rus_J_3_t_17*rus_alpha_2_o_in_axes2_z
         # (rus-alpha_3_o) remainder of: angular acceleration of link 3
         rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x
         rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz
@@ -2554,10 +2554,7 @@ def _run_Z(m, X, V):
         rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o
         rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y
         rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x
-        # (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
-        rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
-        rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3
+        # (rus-acc_3) acceleration of the reference point of link 3, less gravity
         rus_g_in_axes3_x = (
         axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y + axis_x_rus_axes3_z*gravity_z
         )
@@ -2567,55 +2564,64 @@ def _run_Z(m, X, V):
         rus_g_in_axes3_z = (
         axis_z_rus_axes3_x*gravity_x + axis_z_rus_axes3_y*gravity_y + axis_z_rus_axes3_z*gravity_z
         )
+        # (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
+        rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
+        rus_mu_3_t_3 = rus_qd_3*rus_qd_3
+        rus_mu_3_t_4 = rus_J_3_in_spec3_yz*(rus_mu_3_t_2 - rus_mu_3_t_3)
+        rus_mu_3_t_5 = rus_J_3_in_spec3_xy*(rus_mu_3_t - rus_mu_3_t_3)
+        rus_mu_3_t_6 = rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2)
+        # (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         rus_mu_3_o_in_axes3_x = (
         rus_B_3_o_in_axes3_yx*rus_J_3_in_spec3_xy + rus_B_3_o_in_axes3_zx*rus_J_3_in_spec3_xz +
             rus_B_3_o_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
             rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x + rus_g_in_axes3_y*rus_h_3_in_spec3_y
-            + rus_g_in_axes3_z*rus_h_3_in_spec3_z - rus_J_3_in_spec3_yz*(rus_mu_3_o_t_2 -
-            rus_mu_3_o_t_3)
+            + rus_g_in_axes3_z*rus_h_3_in_spec3_z - rus_mu_3_t_4
         )
         rus_mu_3_o_in_axes3_y = (
         rus_B_3_o_in_axes3_xy*rus_J_3_in_spec3_yz +
             rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_y + rus_g_in_axes3_z*rus_h_3_in_spec3_x
-            - rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
-            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_o_t -
-            rus_mu_3_o_t_3) - rus_g_in_axes3_x*rus_h_3_in_spec3_y
+            - rus_mu_3_t_5 - rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
+            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_g_in_axes3_x*rus_h_3_in_spec3_y
         )
         rus_mu_3_o_in_axes3_z = (
         rus_B_3_o_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
-            rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x -
-            rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
-            rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y -
-            rus_g_in_axes3_x*rus_h_3_in_spec3_z - rus_g_in_axes3_y*rus_h_3_in_spec3_x
+            rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x - rus_mu_3_t_6 -
+            rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy -
+            rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y - rus_g_in_axes3_x*rus_h_3_in_spec3_z -
+            rus_g_in_axes3_y*rus_h_3_in_spec3_x
         )
         rus_mu_3_o_in_axes1_z = (
-        rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x - rus_c_3*rus_mu_3_o_in_axes3_y
+        rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x - rus_J_3_t_17*rus_mu_3_o_in_axes3_y
         )
+        # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
+        rus_g_in_axes1_y = rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1
+        rus_mu_1_t_3 = rus_g_in_axes1_y*rus_h_1_in_spec1_x - rus_g_in_axes1_x*rus_h_1_in_spec1_y
         # (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rus_mu_1_o_in_axes1_z = (
-        rus_J_1_in_spec1_zz*rus_qdd_1_o + rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
-            rus_mu_1_t_2*rus_s_1) - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1)
-        )
+        rus_mu_1_o_in_axes1_z = rus_J_1_in_spec1_zz*rus_qdd_1_o - rus_mu_1_t_3
         # (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z
         # (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y
+        # (rus-c) leg force on the platform without actuation and without the mass at the connection point
+        rus_c_t = rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3)
+        rus_c_t_2 = rus_h_3_in_spec3_z*(rus_mu_3_t + rus_mu_3_t_3)
+        rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         # (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rus_c_o_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*rus_v_1_in_axes3_y -
-            rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 + rus_mu_3_o_t_3) -
+        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*rus_v_1_in_axes3_y -
+            rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y
         )
         rus_c_o_in_axes3_y = (
-        rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y - rus_G_o_in_axes3_y -
-            rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_o_t +
-            rus_mu_3_o_t_3)
+        rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y - rus_G_o_in_axes3_y - rus_c_t_2 -
+            rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x
         )
         rus_c_o_in_axes3_z = (
-        rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_y*(rus_mu_3_o_t +
-            rus_mu_3_o_t_2) - rus_G_o_in_axes3_z - rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x
+        rus_c_t_3 + rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z - rus_G_o_in_axes3_z -
+            rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x
         )
         # (rus-U) velocity and gravity terms of the leg force
         rus_U_x = (
@@ -2631,8 +2637,8 @@ def _run_Z(m, X, V):
             axis_z_rus_axes3_z*rus_c_o_in_axes3_z
         )
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
             _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (Z_t) translational part of Z
@@ -2672,59 +2678,50 @@ def _run_H(m, X):
             rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
         ) = k
-        # (rus-S) from the base point to the connection point
-        rus_S_x = rus_platform_point_x + t_x - rus_base_point_x
-        rus_S_y = rus_platform_point_y + t_y - rus_base_point_y
-        rus_S_z = rus_platform_point_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
-        # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*(rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t*rus_s_2_t)
-        # (rus-w_1) reciprocal vector 1
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
         rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
+        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
         axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
@@ -2735,31 +2732,34 @@ def _run_H(m, X):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
-        inv_rus_v_1_t = 1.0/rus_v_1_t
-        rus_w_1_t_7 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y)
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
         )
-        rus_w_1_t_8 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z)
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
         )
-        rus_w_1_t_9 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x)
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (rus-w_1) reciprocal vector 1
         out_H[_H_rus[0][leg]] = -rus_w_1_t_7
@@ -2819,66 +2819,55 @@ def _run_required(m, X, V, A):
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
             rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,
         ) = k
-        # (rus-S) from the base point to the connection point
-        rus_S_x = rus_platform_point_x + t_x - rus_base_point_x
-        rus_S_y = rus_platform_point_y + t_y - rus_base_point_y
-        rus_S_z = rus_platform_point_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
-        # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
         rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
         rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
         rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
         rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
         rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
         rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_c_3*(rus_c_3*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
@@ -2891,13 +2880,16 @@ def _run_required(m, X, V, A):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -2919,6 +2911,11 @@ def _run_required(m, X, V, A):
         inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
+        # (rus-qd_2) rate of joint 2
+        rus_qd_2 = (
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z)
+        )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z +
@@ -2927,14 +2924,11 @@ def _run_required(m, X, V, A):
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
         rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
-        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z) - rus_qd_1_t
-        )
+        rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
@@ -2953,7 +2947,7 @@ def _run_required(m, X, V, A):
         rus_bias_t = rus_c_2*rus_joint2_offset_x
         rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         rus_bias_t_2 = (
-        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y -
+        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
             rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
         )
         rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
@@ -2975,14 +2969,14 @@ def _run_required(m, X, V, A):
         rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
         rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
+        # (rus-qdd_2) acceleration of joint 2
+        rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z)
         # (rus-qdd_3) acceleration of joint 3
         rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y - rus_qdd_1_t*rus_v_1_in_axes3_y)
         # (rus-alpha_2) angular acceleration of link 2
-        rus_alpha_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t
-        )
+        rus_alpha_2_in_axes2_z = rus_qdd_2 - rus_qdd_1_t
         rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_e_1_in_axes3_x
-        rus_alpha_2_in_axes3_y = -rus_alpha_2_in_axes2_z*rus_c_3
+        rus_alpha_2_in_axes3_y = -rus_J_3_t_17*rus_alpha_2_in_axes2_z
         # (rus-alpha_3) angular acceleration of link 3
         rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x
         rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz
@@ -2992,68 +2986,72 @@ def _run_required(m, X, V, A):
         rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y
         rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x
         # (rus-acc_3) acceleration of the reference point of link 3, less gravity
-        rus_acc_3_in_axes3_x = (
-        rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
-            axis_x_rus_axes3_z*gravity_z
+        rus_g_in_axes3_x = (
+        axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y + axis_x_rus_axes3_z*gravity_z
         )
-        rus_acc_3_in_axes3_y = (
-        rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x - axis_y_rus_axes3_y*gravity_y -
-            axis_y_rus_axes3_z*gravity_z
+        rus_g_in_axes3_y = (
+        axis_y_rus_axes3_x*gravity_x + axis_y_rus_axes3_y*gravity_y + axis_y_rus_axes3_z*gravity_z
         )
-        rus_acc_3_in_axes3_z = (
-        rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x - axis_z_rus_axes3_y*gravity_y -
-            axis_z_rus_axes3_z*gravity_z
+        rus_g_in_axes3_z = (
+        axis_z_rus_axes3_x*gravity_x + axis_z_rus_axes3_y*gravity_y + axis_z_rus_axes3_z*gravity_z
         )
+        rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - rus_g_in_axes3_x
+        rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - rus_g_in_axes3_y
+        rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - rus_g_in_axes3_z
         # (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points
         rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
         rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
         rus_mu_3_t_3 = rus_qd_3*rus_qd_3
+        rus_mu_3_t_4 = rus_J_3_in_spec3_yz*(rus_mu_3_t_2 - rus_mu_3_t_3)
+        rus_mu_3_t_5 = rus_J_3_in_spec3_xy*(rus_mu_3_t - rus_mu_3_t_3)
+        rus_mu_3_t_6 = rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2)
         rus_mu_3_in_axes3_x = (
         rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy + rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz +
             rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
-            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_mu_3_t_4 -
+            rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z
         )
         rus_mu_3_in_axes3_y = (
         rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
-            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
-            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x
+            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_mu_3_t_5 -
+            rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz
+            - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x
         )
         rus_mu_3_in_axes3_z = (
         rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx + rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x +
             rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x -
-            rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_t -
-            rus_mu_3_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
+            rus_mu_3_t_6 - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy -
+            rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
         )
-        rus_mu_3_in_axes1_z = rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_c_3*rus_mu_3_in_axes3_y
+        rus_mu_3_in_axes1_z = (
+        rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_J_3_t_17*rus_mu_3_in_axes3_y
+        )
         # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rus_mu_1_in_axes1_z = (
-        rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
-            rus_J_1_in_spec1_zz*rus_qdd_1_t - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 -
-            rus_mu_1_t*rus_s_1)
-        )
+        rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
+        rus_g_in_axes1_y = rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1
+        rus_mu_1_t_3 = rus_g_in_axes1_y*rus_h_1_in_spec1_x - rus_g_in_axes1_x*rus_h_1_in_spec1_y
+        rus_mu_1_in_axes1_z = -rus_mu_1_t_3 - rus_J_1_in_spec1_zz*rus_qdd_1_t
         # (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y
         # (rus-c) leg force on the platform without actuation and without the mass at the connection point
+        rus_c_t = rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3)
+        rus_c_t_2 = rus_h_3_in_spec3_z*(rus_mu_3_t + rus_mu_3_t_3)
+        rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         rus_c_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_N_1_in_axes1_z - rus_G_in_axes3_y*rus_v_1_in_axes3_y -
-            rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3) -
+        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_in_axes1_z - rus_G_in_axes3_y*rus_v_1_in_axes3_y -
+            rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y
         )
         rus_c_in_axes3_y = (
-        rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y -
-            rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
-            rus_mu_3_t_3)
+        rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y - rus_c_t_2 -
+            rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x
         )
         rus_c_in_axes3_z = (
-        rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) -
-            rus_G_in_axes3_z - rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x
+        rus_c_t_3 + rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z - rus_G_in_axes3_z -
+            rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x
         )
         rus_c_x = (
         axis_x_rus_axes3_x*rus_c_in_axes3_x + axis_y_rus_axes3_x*rus_c_in_axes3_y +
@@ -3068,8 +3066,8 @@ def _run_required(m, X, V, A):
             axis_z_rus_axes3_z*rus_c_in_axes3_z
         )
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
             _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (R_t) force that actuators and external wrench must give
@@ -3114,57 +3112,51 @@ def _run_inverse_kinematics(m, X):
             rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size_t_3,
         ) = k
-        # (rus-S) from the base point to the connection point
-        rus_S_x = rus_platform_point_x + t_x - rus_base_point_x
-        rus_S_y = rus_platform_point_y + t_y - rus_base_point_y
-        rus_S_z = rus_platform_point_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
+        )
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
         # (rus-q_1) displacement of joint 1
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_q_1 = (
-        atan2(inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1),
-            inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1))
-        )
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        rus_q_1 = atan2(rus_s_1, rus_c_1)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-q_2) displacement of joint 2
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_q_2 = (
-        atan2(-inv_rus_rho2_2*rus_root_2*rus_xi_1_t, inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x)
-        )
+        rus_q_2 = atan2(-rus_s_2_t, rus_c_2)
         # (rus-q_3) displacement of joint 3
-        rus_q_3 = (
-        atan2(-inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz),
-            inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2)
-        )
+        rus_q_3 = atan2(-rus_e_1_in_axes3_x, rus_J_3_t_17)
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
         )
         # (rus-q_1) displacement of joint 1
         out_q[_q_rus[0][leg]] = rus_q_1
@@ -3175,7 +3167,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 297 mul, 156 add, 12 div, 6 sqrt, 0 trig
+# joint_rates: 303 mul, 156 add, 12 div, 6 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -3205,110 +3197,113 @@ def _run_joint_rates(m, X, V):
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
             rus_w_3_in_axes3_y,
         ) = k
-        # (rus-S) from the base point to the connection point
-        rus_S_x = rus_platform_point_x + t_x - rus_base_point_x
-        rus_S_y = rus_platform_point_y + t_y - rus_base_point_y
-        rus_S_z = rus_platform_point_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
-        # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
         rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
         rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
         rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
         rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
         rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*rus_r_1_in_axes3_z
-        # (rus-qd_1) rate of joint 1
-        rus_qd_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
-        rus_qd_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
-        axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t + rus_base_frame_xy*rus_qd_1_t_2
-        axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t + rus_base_frame_yy*rus_qd_1_t_2
-        axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t + rus_base_frame_zy*rus_qd_1_t_2
-        rus_qd_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
-        rus_qd_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
-        rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1
-        rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4
+        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
+        rus_v_1_in_axes3_z = (
+        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        )
+        # (rus-w_1) reciprocal vector 1
+        rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
+        rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
+        rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
+        rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 -
-            rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 -
-            rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 -
-            rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
-        rus_qd_1_t_7 = (
-        (t_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y) +
-            t_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z) +
-            t_dot_z*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x))/rus_v_1_t
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
+        )
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
+        )
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
+        )
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        # (rus-w_2) reciprocal vector 2
+        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        # (rus-qd_1) rate of joint 1
+        rus_qd_1_t = (
+        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
+            axis_x_rus_axes3_z*t_dot_z)
         )
         # (rus-qd_2) rate of joint 2
-        rus_qd_2_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_qd_2_t_2 = (
-        axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
-            rus_qd_1_t_7*(rus_c_3*(rus_c_3*rus_qd_2_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_qd_2_t - rus_c_3*rus_r_1_in_axes1_z))
+        rus_qd_2 = (
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z)
         )
-        rus_qd_2 = rus_qd_2_t_2/rus_r_1_t
         # (rus-qd_3) rate of joint 3
-        rus_qd_3 = (
-        rus_w_3_in_axes3_y*(axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
-            axis_y_rus_axes3_z*t_dot_z - rus_e_1_in_axes3_x*rus_qd_1_t_7*rus_r_1_in_axes3_z)
+        rus_qd_3_t = (
+        axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z +
+            rus_qd_1_t*rus_v_1_in_axes3_y
         )
+        rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (rus-qd_1) rate of joint 1
-        out_qd[_qd_rus[0][leg]] = -rus_qd_1_t_7
+        out_qd[_qd_rus[0][leg]] = -rus_qd_1_t
         # (rus-qd_2) rate of joint 2
         out_qd[_qd_rus[1][leg]] = rus_qd_2
         # (rus-qd_3) rate of joint 3
@@ -3353,92 +3348,77 @@ def _run_joint_accelerations(m, X, V, A):
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
             rus_w_3_in_axes3_y,
         ) = k
-        # (rus-S) from the base point to the connection point
-        rus_S_x = rus_platform_point_x + t_x - rus_base_point_x
-        rus_S_y = rus_platform_point_y + t_y - rus_base_point_y
-        rus_S_z = rus_platform_point_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
-        # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
         rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
         rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
         rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
         rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
         rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
         rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_c_3*(rus_c_3*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
-        # (rus-qd_1) rate of joint 1
-        rus_qd_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
-        rus_qd_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
-        axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t + rus_base_frame_xy*rus_qd_1_t_2
-        axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t + rus_base_frame_yy*rus_qd_1_t_2
-        axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t + rus_base_frame_zy*rus_qd_1_t_2
-        rus_qd_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
-        rus_qd_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
-        rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1
-        rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4
+        rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
+        rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
+        rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
+        rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 -
-            rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 -
-            rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 -
-            rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -3449,31 +3429,49 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        rus_qd_1_t_7 = (
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        # (rus-w_2) reciprocal vector 2
+        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        # (rus-qd_1) rate of joint 1
+        rus_qd_1_t = (
         inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
+        )
+        # (rus-qd_2) rate of joint 2
+        rus_qd_2 = (
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z)
         )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z +
-            rus_qd_1_t_7*rus_v_1_in_axes3_y
+            rus_qd_1_t*rus_v_1_in_axes3_y
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t_7
-        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t_7
+        rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t_7*rus_v_1_in_axes3_z) - rus_qd_1_t_7
-        )
+        rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
+        # (rus-W_3) centripetal tensor of link 3
+        rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
+        # (rus-S_ddot) acceleration of the connection point
+        rus_S_ddot_in_axes3_x = (
+        axis_x_rus_axes3_x*t_ddot_x + axis_x_rus_axes3_y*t_ddot_y + axis_x_rus_axes3_z*t_ddot_z
+        )
+        rus_S_ddot_in_axes3_y = (
+        axis_y_rus_axes3_x*t_ddot_x + axis_y_rus_axes3_y*t_ddot_y + axis_y_rus_axes3_z*t_ddot_z
+        )
+        rus_S_ddot_in_axes3_z = (
+        axis_z_rus_axes3_x*t_ddot_x + axis_z_rus_axes3_y*t_ddot_y + axis_z_rus_axes3_z*t_ddot_z
+        )
         # (rus-bias) acceleration of the connection point at zero joint accelerations
         rus_bias_t = rus_c_2*rus_joint2_offset_x
         rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         rus_bias_t_2 = (
-        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y -
+        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
             rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
         )
         rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
@@ -3485,24 +3483,14 @@ def _run_joint_accelerations(m, X, V, A):
         rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
-        rus_omega_2_in_axes3_x*rus_qd_3_t +
-            rus_omega_2_in_axes3_x*rus_platform_joint_offset_x*rus_qd_3 -
+        rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
         )
         # (rus-rel) acceleration of the connection point left to the joint accelerations
-        rus_rel_in_axes3_x = (
-        axis_x_rus_axes3_x*t_ddot_x + axis_x_rus_axes3_y*t_ddot_y + axis_x_rus_axes3_z*t_ddot_z -
-            rus_bias_in_axes3_x
-        )
-        rus_rel_in_axes3_y = (
-        axis_y_rus_axes3_x*t_ddot_x + axis_y_rus_axes3_y*t_ddot_y + axis_y_rus_axes3_z*t_ddot_z -
-            rus_bias_in_axes3_y
-        )
-        rus_rel_in_axes3_z = (
-        axis_z_rus_axes3_x*t_ddot_x + axis_z_rus_axes3_y*t_ddot_y + axis_z_rus_axes3_z*t_ddot_z -
-            rus_bias_in_axes3_z
-        )
+        rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x
+        rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y
+        rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
         rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
         # (rus-qdd_2) acceleration of joint 2
@@ -3510,8 +3498,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (rus-qdd_3) acceleration of joint 3
         rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y - rus_qdd_1_t*rus_v_1_in_axes3_y)
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
             _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (rus-qdd_1) acceleration of joint 1
@@ -3566,66 +3554,55 @@ def _run_legs(m, X, V, A):
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
             rus_w_3_in_axes3_y,
         ) = k
-        # (rus-S) from the base point to the connection point
-        rus_S_x = rus_platform_point_x + t_x - rus_base_point_x
-        rus_S_y = rus_platform_point_y + t_y - rus_base_point_y
-        rus_S_z = rus_platform_point_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
-        # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
         rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
         rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
         rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
         rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
         rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
         rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_c_3*(rus_c_3*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
@@ -3638,13 +3615,16 @@ def _run_legs(m, X, V, A):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -3666,6 +3646,11 @@ def _run_legs(m, X, V, A):
         inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
+        # (rus-qd_2) rate of joint 2
+        rus_qd_2 = (
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z)
+        )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z +
@@ -3674,14 +3659,11 @@ def _run_legs(m, X, V, A):
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
         rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
-        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z) - rus_qd_1_t
-        )
+        rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
@@ -3700,7 +3682,7 @@ def _run_legs(m, X, V, A):
         rus_bias_t = rus_c_2*rus_joint2_offset_x
         rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         rus_bias_t_2 = (
-        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y -
+        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
             rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
         )
         rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
@@ -3722,14 +3704,14 @@ def _run_legs(m, X, V, A):
         rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
         rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
+        # (rus-qdd_2) acceleration of joint 2
+        rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z)
         # (rus-qdd_3) acceleration of joint 3
         rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y - rus_qdd_1_t*rus_v_1_in_axes3_y)
         # (rus-alpha_2) angular acceleration of link 2
-        rus_alpha_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t
-        )
+        rus_alpha_2_in_axes2_z = rus_qdd_2 - rus_qdd_1_t
         rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_e_1_in_axes3_x
-        rus_alpha_2_in_axes3_y = -rus_alpha_2_in_axes2_z*rus_c_3
+        rus_alpha_2_in_axes3_y = -rus_J_3_t_17*rus_alpha_2_in_axes2_z
         # (rus-alpha_3) angular acceleration of link 3
         rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x
         rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz
@@ -3739,68 +3721,72 @@ def _run_legs(m, X, V, A):
         rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y
         rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x
         # (rus-acc_3) acceleration of the reference point of link 3, less gravity
-        rus_acc_3_in_axes3_x = (
-        rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
-            axis_x_rus_axes3_z*gravity_z
+        rus_g_in_axes3_x = (
+        axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y + axis_x_rus_axes3_z*gravity_z
         )
-        rus_acc_3_in_axes3_y = (
-        rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x - axis_y_rus_axes3_y*gravity_y -
-            axis_y_rus_axes3_z*gravity_z
+        rus_g_in_axes3_y = (
+        axis_y_rus_axes3_x*gravity_x + axis_y_rus_axes3_y*gravity_y + axis_y_rus_axes3_z*gravity_z
         )
-        rus_acc_3_in_axes3_z = (
-        rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x - axis_z_rus_axes3_y*gravity_y -
-            axis_z_rus_axes3_z*gravity_z
+        rus_g_in_axes3_z = (
+        axis_z_rus_axes3_x*gravity_x + axis_z_rus_axes3_y*gravity_y + axis_z_rus_axes3_z*gravity_z
         )
+        rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - rus_g_in_axes3_x
+        rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - rus_g_in_axes3_y
+        rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - rus_g_in_axes3_z
         # (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points
         rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
         rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
         rus_mu_3_t_3 = rus_qd_3*rus_qd_3
+        rus_mu_3_t_4 = rus_J_3_in_spec3_yz*(rus_mu_3_t_2 - rus_mu_3_t_3)
+        rus_mu_3_t_5 = rus_J_3_in_spec3_xy*(rus_mu_3_t - rus_mu_3_t_3)
+        rus_mu_3_t_6 = rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2)
         rus_mu_3_in_axes3_x = (
         rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy + rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz +
             rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
-            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_mu_3_t_4 -
+            rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z
         )
         rus_mu_3_in_axes3_y = (
         rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
-            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
-            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x
+            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_mu_3_t_5 -
+            rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz
+            - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x
         )
         rus_mu_3_in_axes3_z = (
         rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx + rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x +
             rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x -
-            rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_t -
-            rus_mu_3_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
+            rus_mu_3_t_6 - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy -
+            rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
         )
-        rus_mu_3_in_axes1_z = rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_c_3*rus_mu_3_in_axes3_y
+        rus_mu_3_in_axes1_z = (
+        rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_J_3_t_17*rus_mu_3_in_axes3_y
+        )
         # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rus_mu_1_in_axes1_z = (
-        rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
-            rus_J_1_in_spec1_zz*rus_qdd_1_t - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 -
-            rus_mu_1_t*rus_s_1)
-        )
+        rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
+        rus_g_in_axes1_y = rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1
+        rus_mu_1_t_3 = rus_g_in_axes1_y*rus_h_1_in_spec1_x - rus_g_in_axes1_x*rus_h_1_in_spec1_y
+        rus_mu_1_in_axes1_z = -rus_mu_1_t_3 - rus_J_1_in_spec1_zz*rus_qdd_1_t
         # (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y
         # (rus-c) leg force on the platform without actuation and without the mass at the connection point
+        rus_c_t = rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3)
+        rus_c_t_2 = rus_h_3_in_spec3_z*(rus_mu_3_t + rus_mu_3_t_3)
+        rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         rus_c_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_N_1_in_axes1_z - rus_G_in_axes3_y*rus_v_1_in_axes3_y -
-            rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3) -
+        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_in_axes1_z - rus_G_in_axes3_y*rus_v_1_in_axes3_y -
+            rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y
         )
         rus_c_in_axes3_y = (
-        rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y -
-            rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
-            rus_mu_3_t_3)
+        rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y - rus_c_t_2 -
+            rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x
         )
         rus_c_in_axes3_z = (
-        rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) -
-            rus_G_in_axes3_z - rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x
+        rus_c_t_3 + rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z - rus_G_in_axes3_z -
+            rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x
         )
         # (rus-c_true) leg force on the platform without actuation, the last link's mass included
         rus_c_true_in_axes3_x = rus_c_in_axes3_x - rus_acc_3_in_axes3_x*rus_link3_mass
@@ -3819,8 +3805,8 @@ def _run_legs(m, X, V, A):
             axis_z_rus_axes3_z*rus_c_true_in_axes3_z
         )
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
             _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (rus-c_true) leg force on the platform without actuation, the last link's mass included
@@ -3866,71 +3852,65 @@ def _run_potential(m, X):
             rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, rus_potential_t,
             rus_potential_t_2, rus_potential_t_3, rus_rho2_1_t, rus_size_t_3,
         ) = k
-        # (rus-S) from the base point to the connection point
-        rus_S_x = rus_platform_point_x + t_x - rus_base_point_x
-        rus_S_y = rus_platform_point_y + t_y - rus_base_point_y
-        rus_S_z = rus_platform_point_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
-        # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (potential) potential energy
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
         rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
-        rus_potential_t_4 = rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_c_3*rus_h_3_in_spec3_x
-        rus_potential_t_5 = (
-        rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 + rus_c_3*rus_h_3_in_spec3_z +
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_x) + (rus_c_1*rus_mu_1_t +
-            rus_mu_1_t_2*rus_s_1)*(rus_h_1_in_spec1_x + rus_h_3_in_spec3_y*rus_s_2_t +
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rus_d_Gamma_2_t_2 = (
+        rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_J_3_t_17*rus_h_3_in_spec3_x
+        )
+        # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
+        rus_g_in_axes1_y = rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1
+        # (potential) potential energy
+        rus_potential_t_4 = (
+        rus_g_in_axes1_x*(rus_h_1_in_spec1_x + rus_h_3_in_spec3_y*rus_s_2_t +
             rus_link1_mass*(rus_c_1*rus_potential_t + rus_potential_t_2*rus_s_1) -
-            rus_c_2*rus_potential_t_4) + (rus_c_1*rus_mu_1_t_2 -
-            rus_mu_1_t*rus_s_1)*(rus_h_1_in_spec1_y + rus_c_2*rus_h_3_in_spec3_y +
-            rus_link1_mass*(rus_c_1*rus_potential_t_2 - rus_potential_t*rus_s_1) +
-            rus_potential_t_4*rus_s_2_t)
+            rus_c_2*rus_d_Gamma_2_t_2) + rus_g_in_axes1_y*(rus_h_1_in_spec1_y +
+            rus_c_2*rus_h_3_in_spec3_y + rus_d_Gamma_2_t_2*rus_s_2_t +
+            rus_link1_mass*(rus_c_1*rus_potential_t_2 - rus_potential_t*rus_s_1)) +
+            rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 +
+            rus_J_3_t_17*rus_h_3_in_spec3_z + rus_e_1_in_axes3_x*rus_h_3_in_spec3_x)
         )
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
         )
         # (potential) potential energy
-        potential_t_2 += rus_potential_t_5
+        potential_t_2 += rus_potential_t_4
     # (potential) potential energy
     potential = -potential_t - potential_t_2
     # (potential) potential energy
@@ -3971,59 +3951,50 @@ def _run_condition(m, X):
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
             rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
         ) = k
-        # (rus-S) from the base point to the connection point
-        rus_S_x = rus_platform_point_x + t_x - rus_base_point_x
-        rus_S_y = rus_platform_point_y + t_y - rus_base_point_y
-        rus_S_z = rus_platform_point_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
-        # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*(rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t*rus_s_2_t)
-        # (rus-w_1) reciprocal vector 1
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
         rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
+        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
         axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
@@ -4034,32 +4005,35 @@ def _run_condition(m, X):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
-        inv_rus_v_1_t = 1.0/rus_v_1_t
-        rus_w_1_t_7 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y)
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
         )
-        rus_w_1_t_8 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z)
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
         )
-        rus_w_1_t_9 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x)
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rus_pivot_size = abs(rus_rho2_1)
-        rus_pivot_size_2 = abs(rus_rho2_2)
+        rus_pivot_size = abs(rus_J_3_t_10)
+        rus_pivot_size_2 = abs(rus_J_3_t_15)
         rus_pivot_size_3 = abs(rus_r_1_t)
-        rus_pivot_size_4 = abs(rus_v_1_t)
+        rus_pivot_size_4 = abs(rus_v_1_t_2)
         rus_least_pivots = (
         least(least(least(sqrt(inv_rus_rho2_1_t*rus_pivot_size), inv_rus_size*rus_pivot_size_3),
             inv_rus_size*rus_pivot_size_4), sqrt(inv_rus_size_t_3*rus_pivot_size_2))
@@ -4072,11 +4046,11 @@ def _run_condition(m, X):
         rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 + rus_spread_t_3*rus_spread_t_3
         )
         clear = (
-        clear & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (abs(rus_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) > _TOLERANCE * rus_size) &
-            (abs(rus_v_1_t) > _TOLERANCE * rus_size)
+        clear & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (abs(rus_J_3_t_15)
+            > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) > _TOLERANCE * rus_size) &
+            (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
-        reached = reached & (rus_disc_1 >= 0.0)
+        reached = reached & (rus_J_3_t_11 >= 0.0)
         # (spread) rms distance of the platform points from their centroid
         spread_rus += rus_spread_t_4
         # (rus-w_1) reciprocal vector 1
@@ -4085,7 +4059,7 @@ def _run_condition(m, X):
         out_H[_H_rus[2][leg]] = -rus_w_1_t_9
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rus[0][leg]] = rus_least_pivots
-        out_reach[_reach_rus[0][leg]] = rus_disc_1
+        out_reach[_reach_rus[0][leg]] = rus_J_3_t_11
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_rus)*spread_t
     # (spread) rms distance of the platform points from their centroid
@@ -4237,12 +4211,12 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[[0, 3, 6]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
-    gap = _wrapped(subtract_1, [0, 1, 2])
-    return (gap,)
+    residual = _wrapped(subtract_1, [0, 1, 2])
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -4251,7 +4225,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

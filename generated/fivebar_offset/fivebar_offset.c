@@ -145,9 +145,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -209,6 +209,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -257,7 +281,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -267,7 +291,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -280,7 +304,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -297,16 +321,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -314,7 +338,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1351,38 +1384,41 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real W_p_xx, R_xx, R_yx, h_star_x, h_star_y;
+    real W_p_xx, R_xx, R_yx, h_star_x, h_star_y, f_p_t, f_p_t_2;
 } values;
 
 INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
 {
     /* (W_p) centripetal tensor of the platform */
     const real omega_z = V[2*w + k];
-    const real W_p_xx = -omega_z*omega_z;
-    v->W_p_xx = W_p_xx;
+    v->W_p_xx = -omega_z*omega_z;
 }
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
     /* X: named entries */
     const real X_2 = X[2*w + k];
-    const real R_xx = cosine(X_2);
-    const real R_yx = sine(X_2);
+    v->R_xx = cosine(X_2);
+    v->R_yx = sine(X_2);
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x - R_yx*m->h_star_in_platform_y;
-    const real h_star_y = R_xx*m->h_star_in_platform_y + R_yx*m->h_star_in_platform_x;
-    v->R_xx = R_xx;
-    v->R_yx = R_yx;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
+    v->h_star_x = v->R_xx*m->h_star_in_platform_x - v->R_yx*m->h_star_in_platform_y;
+    v->h_star_y = v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x;
+}
+
+INLINE void stage_V_X(values *v)
+{
+    /* (f_p) inertia force of the platform less its weight */
+    v->f_p_t = v->W_p_xx*v->h_star_x;
+    v->f_p_t_2 = -v->W_p_xx*v->h_star_y;
 }
 
 typedef struct {
-    real crank_q_x, crank_q_y, crank_rho2_1, crank_c_1, crank_s_1, axis_y_crank_axes1_x,
-        axis_x_crank_axes1_x, crank_n_c_x, crank_n_c_y, crank_w_1_x, crank_w_1_y, crank_H_a_1_z,
-        crank_Hk_a_1_z, crank_a_p_x, crank_a_p_y, crank_S_ddot_x, crank_S_ddot_y, crank_Q_xx,
-        crank_Q_xy, crank_Q_yy, crank_M_ta_t, crank_M_ta_t_2, crank_M_aa_t, crank_S_dot_t,
-        crank_S_dot_t_2, crank_S_dot_in_axes1_y, crank_c_t, crank_c_t_2;
+    real crank_q_x, crank_q_y, crank_S_in_turn1_x, crank_S_in_turn1_y, crank_rho2_1, crank_c_1,
+        crank_s_1, axis_y_crank_axes1_x, axis_x_crank_axes1_x, crank_n_c_x, crank_n_c_y, crank_w_1_x,
+        crank_w_1_y, crank_mu_1_t_3, crank_H_a_1_z, crank_Hk_a_1_z, crank_a_p_x, crank_a_p_y,
+        crank_S_dot_t, crank_S_dot_t_2, crank_S_dot_in_axes1_y, crank_qd_1, crank_u_1_x, crank_u_1_y,
+        crank_qdd_1, crank_Q_xx, crank_Q_xy, crank_Q_yy, crank_M_ta_t, crank_M_ta_t_2, crank_M_aa_t,
+        crank_U_x, crank_U_y, crank_Z_a_t, crank_c_t, crank_c_t_2;
 } values_crank;
 
 INLINE void stage_crank_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -1391,54 +1427,44 @@ INLINE void stage_crank_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (crank-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real crank_q_x = R_xx*m->crank_platform_point_x[i] -
-        R_yx*m->crank_platform_point_y[i];
-    const real crank_q_y = R_xx*m->crank_platform_point_y[i] +
-        R_yx*m->crank_platform_point_x[i];
+    v->crank_q_x = R_xx*m->crank_platform_point_x[i] - R_yx*m->crank_platform_point_y[i];
+    v->crank_q_y = R_xx*m->crank_platform_point_y[i] + R_yx*m->crank_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real crank_S_x = t_x - m->crank_base_point_x[i] + crank_q_x;
+    const real crank_S_x = t_x - m->crank_base_point_x[i] + v->crank_q_x;
     const real t_y = X[1*w + j];
-    const real crank_S_y = t_y - m->crank_base_point_y[i] + crank_q_y;
-    const real crank_S_in_turn1_x = crank_S_x*m->crank_base_frame_xx[i] +
+    const real crank_S_y = t_y - m->crank_base_point_y[i] + v->crank_q_y;
+    v->crank_S_in_turn1_x = crank_S_x*m->crank_base_frame_xx[i] +
         crank_S_y*m->crank_base_frame_yx[i];
-    const real crank_S_in_turn1_y = crank_S_x*m->crank_base_frame_xy[i] +
+    v->crank_S_in_turn1_y = crank_S_x*m->crank_base_frame_xy[i] +
         crank_S_y*m->crank_base_frame_yy[i];
     /* (crank-rho2_1) squared amplitude */
-    const real crank_rho2_1 = m->crank_size_t[i]*(crank_S_in_turn1_x*crank_S_in_turn1_x +
-        crank_S_in_turn1_y*crank_S_in_turn1_y);
+    v->crank_rho2_1 = m->crank_size_t[i]*(v->crank_S_in_turn1_x*v->crank_S_in_turn1_x +
+        v->crank_S_in_turn1_y*v->crank_S_in_turn1_y);
     /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real crank_c_1_t = 1/(root(crank_rho2_1));
-    const real crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*m->crank_platform_joint_offset_x[i];
+    const real crank_c_1_t = 1/(root(v->crank_rho2_1));
+    v->crank_c_1 = v->crank_S_in_turn1_x*crank_c_1_t*m->crank_platform_joint_offset_x[i];
     /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-    const real crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*m->crank_platform_joint_offset_x[i];
+    v->crank_s_1 = v->crank_S_in_turn1_y*crank_c_1_t*m->crank_platform_joint_offset_x[i];
     /* (crank-S_dot) velocity of the connection point */
-    const real axis_y_crank_axes1_x = m->crank_base_frame_xy[i]*crank_c_1 -
-        m->crank_base_frame_xx[i]*crank_s_1;
-    const real axis_x_crank_axes1_x = m->crank_base_frame_yy[i]*crank_c_1 -
-        m->crank_base_frame_yx[i]*crank_s_1;
+    v->axis_y_crank_axes1_x = m->crank_base_frame_xy[i]*v->crank_c_1 -
+        m->crank_base_frame_xx[i]*v->crank_s_1;
+    v->axis_x_crank_axes1_x = m->crank_base_frame_yy[i]*v->crank_c_1 -
+        m->crank_base_frame_yx[i]*v->crank_s_1;
     /* (crank-n_c) direction of the constraint force */
-    const real crank_n_c_x = axis_x_crank_axes1_x*m->crank_n_c_in_axes1_x[i];
-    const real crank_n_c_y = -axis_y_crank_axes1_x*m->crank_n_c_in_axes1_x[i];
+    v->crank_n_c_x = v->axis_x_crank_axes1_x*m->crank_n_c_in_axes1_x[i];
+    v->crank_n_c_y = -v->axis_y_crank_axes1_x*m->crank_n_c_in_axes1_x[i];
     /* (crank-w_1) reciprocal vector 1 */
-    const real crank_w_1_x = axis_y_crank_axes1_x*m->crank_w_1_in_axes1_y[i];
-    const real crank_w_1_y = axis_x_crank_axes1_x*m->crank_w_1_in_axes1_y[i];
+    v->crank_w_1_x = v->axis_y_crank_axes1_x*m->crank_w_1_in_axes1_y[i];
+    v->crank_w_1_y = v->axis_x_crank_axes1_x*m->crank_w_1_in_axes1_y[i];
+    /* (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    v->crank_mu_1_t_3 = m->crank_h_1_in_spec1_x[i]*(v->crank_c_1*m->crank_mu_1_t_2[i] -
+        m->crank_mu_1_t[i]*v->crank_s_1) -
+        m->crank_h_1_in_spec1_y[i]*(v->crank_c_1*m->crank_mu_1_t[i] +
+        m->crank_mu_1_t_2[i]*v->crank_s_1);
     /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-    const real crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x;
+    v->crank_H_a_1_z = v->crank_q_x*v->crank_w_1_y - v->crank_q_y*v->crank_w_1_x;
     /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y;
-    v->crank_q_x = crank_q_x;
-    v->crank_q_y = crank_q_y;
-    v->crank_rho2_1 = crank_rho2_1;
-    v->crank_c_1 = crank_c_1;
-    v->crank_s_1 = crank_s_1;
-    v->axis_y_crank_axes1_x = axis_y_crank_axes1_x;
-    v->axis_x_crank_axes1_x = axis_x_crank_axes1_x;
-    v->crank_n_c_x = crank_n_c_x;
-    v->crank_n_c_y = crank_n_c_y;
-    v->crank_w_1_x = crank_w_1_x;
-    v->crank_w_1_y = crank_w_1_y;
-    v->crank_H_a_1_z = crank_H_a_1_z;
-    v->crank_Hk_a_1_z = crank_Hk_a_1_z;
+    v->crank_Hk_a_1_z = v->crank_n_c_y*v->crank_q_x - v->crank_n_c_x*v->crank_q_y;
 }
 
 INLINE void stage_crank_A_X(size_t w, size_t j, const real *A, values_crank *v)
@@ -1446,93 +1472,99 @@ INLINE void stage_crank_A_X(size_t w, size_t j, const real *A, values_crank *v)
     /* (crank-a_p) acceleration of the connection point without its centripetal part */
     const real alpha_z = A[2*w + j];
     const real t_ddot_x = A[0*w + j];
-    const real crank_a_p_x = t_ddot_x - alpha_z*v->crank_q_y;
+    v->crank_a_p_x = t_ddot_x - alpha_z*v->crank_q_y;
     const real t_ddot_y = A[1*w + j];
-    const real crank_a_p_y = t_ddot_y + alpha_z*v->crank_q_x;
-    v->crank_a_p_x = crank_a_p_x;
-    v->crank_a_p_y = crank_a_p_y;
+    v->crank_a_p_y = t_ddot_y + alpha_z*v->crank_q_x;
 }
 
-INLINE void stage_crank_A_V_X(size_t w, size_t j, const real *V, values_crank *v)
+INLINE void stage_crank_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
+    real *V, values_crank *v)
+{
+    /* (crank-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    v->crank_S_dot_t = v->crank_q_y*omega_z;
+    v->crank_S_dot_t_2 = v->crank_q_x*omega_z;
+    const real t_dot_x = V[0*w + j];
+    const real crank_S_dot_x = t_dot_x - v->crank_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real crank_S_dot_y = t_dot_y + v->crank_S_dot_t_2;
+    v->crank_S_dot_in_axes1_y = v->axis_x_crank_axes1_x*crank_S_dot_y +
+        v->axis_y_crank_axes1_x*crank_S_dot_x;
+    /* (crank-qd_1) rate of joint 1 */
+    v->crank_qd_1 = v->crank_S_dot_in_axes1_y*m->crank_w_1_in_axes1_y[i];
+    /* (crank-u_1) centripetal acceleration of the connection point */
+    const real W_p_xx = s[2*w + j];
+    v->crank_u_1_x = W_p_xx*v->crank_q_x;
+    v->crank_u_1_y = W_p_xx*v->crank_q_y;
+}
+
+INLINE void stage_crank_A_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_crank *v)
 {
     /* (crank-S_ddot) acceleration of the connection point */
     const real omega_z = V[2*w + j];
-    const real crank_S_ddot_x = v->crank_a_p_x - v->crank_q_x*omega_z*omega_z;
-    const real crank_S_ddot_y = v->crank_a_p_y - v->crank_q_y*omega_z*omega_z;
-    v->crank_S_ddot_x = crank_S_ddot_x;
-    v->crank_S_ddot_y = crank_S_ddot_y;
+    const real crank_S_ddot_x = v->crank_a_p_x - v->crank_S_dot_t_2*omega_z;
+    const real crank_S_ddot_y = v->crank_a_p_y - v->crank_S_dot_t*omega_z;
+    /* (crank-qdd_1) acceleration of joint 1 */
+    v->crank_qdd_1 = m->crank_w_1_in_axes1_y[i]*(v->axis_x_crank_axes1_x*crank_S_ddot_y +
+        v->axis_y_crank_axes1_x*crank_S_ddot_x);
 }
 
 INLINE void stage_crank_M_dynamics(const prepared *m, size_t i, values_crank *v)
 {
     /* (crank-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real crank_Q_t = v->axis_y_crank_axes1_x*m->crank_d_G_in_axes1_yy[i];
-    const real crank_Q_xx = v->axis_y_crank_axes1_x*crank_Q_t;
-    const real crank_Q_xy = v->axis_x_crank_axes1_x*crank_Q_t;
-    const real crank_Q_yy =
+    v->crank_Q_xx = v->axis_y_crank_axes1_x*crank_Q_t;
+    v->crank_Q_xy = v->axis_x_crank_axes1_x*crank_Q_t;
+    v->crank_Q_yy =
         v->axis_x_crank_axes1_x*v->axis_x_crank_axes1_x*m->crank_d_G_in_axes1_yy[i];
     /* (M_ta) coupling block of M */
-    const real crank_M_ta_t = crank_Q_xy*v->crank_q_x - crank_Q_xx*v->crank_q_y;
-    const real crank_M_ta_t_2 = crank_Q_yy*v->crank_q_x - crank_Q_xy*v->crank_q_y;
+    v->crank_M_ta_t = v->crank_Q_xy*v->crank_q_x - v->crank_Q_xx*v->crank_q_y;
+    v->crank_M_ta_t_2 = v->crank_Q_yy*v->crank_q_x - v->crank_Q_xy*v->crank_q_y;
     /* (M_aa) rotational block of M */
-    const real crank_M_aa_t = crank_M_ta_t_2*v->crank_q_x - crank_M_ta_t*v->crank_q_y;
-    v->crank_Q_xx = crank_Q_xx;
-    v->crank_Q_xy = crank_Q_xy;
-    v->crank_Q_yy = crank_Q_yy;
-    v->crank_M_ta_t = crank_M_ta_t;
-    v->crank_M_ta_t_2 = crank_M_ta_t_2;
-    v->crank_M_aa_t = crank_M_aa_t;
+    v->crank_M_aa_t = v->crank_M_ta_t_2*v->crank_q_x - v->crank_M_ta_t*v->crank_q_y;
 }
 
-INLINE void stage_crank_constraint_bias_dynamics(size_t w, size_t j, const real *V, values_crank
-    *v)
+INLINE void stage_crank_Z_dynamics(const prepared *m, size_t i, values_crank *v)
 {
-    /* (crank-S_dot) velocity of the connection point */
-    const real omega_z = V[2*w + j];
-    const real crank_S_dot_t = v->crank_q_y*omega_z;
-    const real crank_S_dot_t_2 = v->crank_q_x*omega_z;
-    const real t_dot_x = V[0*w + j];
-    const real crank_S_dot_x = t_dot_x - crank_S_dot_t;
-    const real t_dot_y = V[1*w + j];
-    const real crank_S_dot_y = t_dot_y + crank_S_dot_t_2;
-    const real crank_S_dot_in_axes1_y = v->axis_x_crank_axes1_x*crank_S_dot_y +
-        v->axis_y_crank_axes1_x*crank_S_dot_x;
-    v->crank_S_dot_t = crank_S_dot_t;
-    v->crank_S_dot_t_2 = crank_S_dot_t_2;
-    v->crank_S_dot_in_axes1_y = crank_S_dot_in_axes1_y;
+    /* (crank-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real crank_mu_1_o_in_axes1_z =
+        m->crank_J_1_in_spec1_zz[i]*m->crank_w_1_in_axes1_y[i]*(v->axis_x_crank_axes1_x*v->crank_u_1_y
+        + v->axis_y_crank_axes1_x*v->crank_u_1_x) - v->crank_mu_1_t_3;
+    /* (crank-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*m->crank_w_1_in_axes1_y[i];
+    /* (crank-U) velocity and gravity terms of the leg force */
+    v->crank_U_x = v->axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
+    v->crank_U_y = v->axis_x_crank_axes1_x*crank_G_o_in_axes1_y;
+    /* (Z_a) rotational part of Z */
+    v->crank_Z_a_t = v->crank_U_y*v->crank_q_x - v->crank_U_x*v->crank_q_y;
 }
 
 INLINE void stage_crank_legs_required(const prepared *m, size_t i, values_crank *v)
 {
     /* (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real crank_mu_1_in_axes1_z =
-        m->crank_h_1_in_spec1_y[i]*(v->crank_c_1*m->crank_mu_1_t[i] +
-        m->crank_mu_1_t_2[i]*v->crank_s_1) -
-        m->crank_h_1_in_spec1_x[i]*(v->crank_c_1*m->crank_mu_1_t_2[i] -
-        m->crank_mu_1_t[i]*v->crank_s_1) +
-        m->crank_J_1_in_spec1_zz[i]*m->crank_w_1_in_axes1_y[i]*(v->axis_x_crank_axes1_x*v->crank_S_ddot_y
-        + v->axis_y_crank_axes1_x*v->crank_S_ddot_x);
+    const real crank_mu_1_in_axes1_z = m->crank_J_1_in_spec1_zz[i]*v->crank_qdd_1 -
+        v->crank_mu_1_t_3;
     /* (crank-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real crank_G_in_axes1_y = crank_mu_1_in_axes1_z*m->crank_w_1_in_axes1_y[i];
     /* (crank-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real crank_c_t = v->axis_y_crank_axes1_x*crank_G_in_axes1_y;
-    const real crank_c_t_2 = v->axis_x_crank_axes1_x*crank_G_in_axes1_y;
-    v->crank_c_t = crank_c_t;
-    v->crank_c_t_2 = crank_c_t_2;
+    v->crank_c_t = v->axis_y_crank_axes1_x*crank_G_in_axes1_y;
+    v->crank_c_t_2 = v->axis_x_crank_axes1_x*crank_G_in_axes1_y;
 }
 
 typedef struct {
     real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2,
-        rrr_r_1_in_axes1_y, rrr_r_1_in_axes1_x, rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, rrr_w_1_t,
-        rrr_w_1_t_2, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y,
-        rrr_qd_1_t, rrr_qd_1_t_2, rrr_a_p_x, rrr_a_p_y, rrr_S_dot_t, rrr_S_dot_t_2, rrr_S_dot_x,
-        rrr_S_dot_y, rrr_W_1_t, rrr_W_2_t, rrr_bias_in_axes2_x, rrr_S_ddot_x, rrr_S_ddot_y,
-        rrr_H_a_1_z, rrr_w_2_in_axes2_x, rrr_d_Gamma_2_in_axes2_x, rrr_d_Gamma_1_in_axes2_x,
-        rrr_d_c_in_axes2_xy, rrr_Kd_1, rrr_Kc_1, rrr_Ks_1, rrr_root_1, inv_rrr_rho2_1,
-        rrr_x_2_in_axes1_x, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x,
-        rrr_c_in_axes2_y;
+        rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x,
+        rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
+        rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x, rrr_a_p_y, rrr_qd_1,
+        rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x, rrr_c_t, rrr_c_t_2,
+        rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx, rrr_Q_xy,
+        rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y, rrr_Z_a_t,
+        rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1541,12 +1573,12 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rrr_q_x = R_xx*m->rrr_platform_point_x[i] - R_yx*m->rrr_platform_point_y[i];
-    const real rrr_q_y = R_xx*m->rrr_platform_point_y[i] + R_yx*m->rrr_platform_point_x[i];
+    v->rrr_q_x = R_xx*m->rrr_platform_point_x[i] - R_yx*m->rrr_platform_point_y[i];
+    v->rrr_q_y = R_xx*m->rrr_platform_point_y[i] + R_yx*m->rrr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + rrr_q_x;
+    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + v->rrr_q_x;
     const real t_y = X[1*w + j];
-    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + rrr_q_y;
+    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + v->rrr_q_y;
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
@@ -1558,65 +1590,52 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
         rrr_S_y*m->rrr_base_frame_yy[i]);
     /* (rrr-rho2_1) squared amplitude */
-    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+    v->rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
-    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+    v->rrr_disc_1 = v->rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
     /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
+    const real rrr_root_1 = m->rrr_branch_1[i]*root(v->rrr_disc_1);
     /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-    const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+    const real inv_rrr_rho2_1 = 1/v->rrr_rho2_1;
+    v->rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
+    v->rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real rrr_c_2 =
-        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
+    v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rrr_s_2 =
+    v->rrr_s_2 =
         -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*rrr_s_2;
+    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*v->rrr_s_2;
     const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
-        rrr_c_2*m->rrr_platform_joint_offset_x[i];
-    const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-    const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        v->rrr_c_2*m->rrr_platform_joint_offset_x[i];
+    v->rrr_r_1_in_axes2_x = v->rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*v->rrr_s_2;
+    v->rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*v->rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
-    const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
+    const real rrr_w_1_t = v->rrr_c_2*v->rrr_s_1 + v->rrr_c_1*v->rrr_s_2;
+    const real rrr_w_1_t_2 = v->rrr_c_1*v->rrr_c_2 - v->rrr_s_1*v->rrr_s_2;
+    v->axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_w_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
+    v->axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_yx[i]*rrr_w_1_t;
-    const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-    const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
-    const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
-    /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
-    const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-    v->rrr_q_x = rrr_q_x;
-    v->rrr_q_y = rrr_q_y;
-    v->rrr_rho2_1 = rrr_rho2_1;
-    v->rrr_disc_1 = rrr_disc_1;
-    v->rrr_c_1 = rrr_c_1;
-    v->rrr_s_1 = rrr_s_1;
-    v->rrr_c_2 = rrr_c_2;
-    v->rrr_s_2 = rrr_s_2;
-    v->rrr_r_1_in_axes1_y = rrr_r_1_in_axes1_y;
-    v->rrr_r_1_in_axes1_x = rrr_r_1_in_axes1_x;
-    v->rrr_r_1_in_axes2_x = rrr_r_1_in_axes2_x;
-    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
-    v->rrr_w_1_t = rrr_w_1_t;
-    v->rrr_w_1_t_2 = rrr_w_1_t_2;
-    v->axis_y_rrr_axes2_x = axis_y_rrr_axes2_x;
-    v->axis_x_rrr_axes2_x = axis_x_rrr_axes2_x;
-    v->rrr_w_1_in_axes2_x = rrr_w_1_in_axes2_x;
-    v->rrr_w_1_x = rrr_w_1_x;
-    v->rrr_w_1_y = rrr_w_1_y;
-    v->rrr_qd_1_t = rrr_qd_1_t;
-    v->rrr_qd_1_t_2 = rrr_qd_1_t_2;
+    v->rrr_w_1_in_axes2_x = -1/v->rrr_r_1_in_axes2_y;
+    v->rrr_w_1_x = v->axis_x_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
+    v->rrr_w_1_y = -v->axis_y_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
+    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->rrr_g_in_axes2_x = v->axis_x_rrr_axes2_x*m->gravity_x -
+        v->axis_y_rrr_axes2_x*m->gravity_y;
+    v->rrr_g_in_axes2_y = v->axis_x_rrr_axes2_x*m->gravity_y +
+        v->axis_y_rrr_axes2_x*m->gravity_x;
+    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    v->rrr_g_in_axes1_x = v->rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v->rrr_s_1;
+    v->rrr_g_in_axes1_y = v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1;
+    v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
+        v->rrr_g_in_axes1_x*m->rrr_h_1_in_spec1_y[i];
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    v->rrr_H_a_1_z = v->rrr_q_x*v->rrr_w_1_y - v->rrr_q_y*v->rrr_w_1_x;
 }
 
 INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
@@ -1624,11 +1643,9 @@ INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
     /* (rrr-a_p) acceleration of the connection point without its centripetal part */
     const real alpha_z = A[2*w + j];
     const real t_ddot_x = A[0*w + j];
-    const real rrr_a_p_x = t_ddot_x - alpha_z*v->rrr_q_y;
+    v->rrr_a_p_x = t_ddot_x - alpha_z*v->rrr_q_y;
     const real t_ddot_y = A[1*w + j];
-    const real rrr_a_p_y = t_ddot_y + alpha_z*v->rrr_q_x;
-    v->rrr_a_p_x = rrr_a_p_x;
-    v->rrr_a_p_y = rrr_a_p_y;
+    v->rrr_a_p_y = t_ddot_y + alpha_z*v->rrr_q_x;
 }
 
 INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1643,55 +1660,47 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real t_dot_y = V[1*w + j];
     const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_2;
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
+    v->rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
         v->axis_y_rrr_axes2_x*rrr_S_dot_y);
+    /* (rrr-qd_2) rate of joint 2 */
+    v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
+        v->axis_y_rrr_axes2_x*rrr_S_dot_x - v->rrr_qd_1*v->rrr_r_1_in_axes2_x);
     /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+    const real rrr_W_1_t = v->rrr_qd_1*v->rrr_qd_1;
     /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-        m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
-        v->axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*v->rrr_r_1_in_axes2_x);
+    const real rrr_omega_2_in_axes2_z = v->rrr_qd_1 + v->rrr_qd_2;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+    /* (rrr-u_1) centripetal acceleration of the connection point */
+    v->rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
+    v->rrr_u_1_t = omega_z*rrr_S_dot_t;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
+    v->rrr_bias_in_axes2_y = rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
+    v->rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
         rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
-    v->rrr_S_dot_t = rrr_S_dot_t;
-    v->rrr_S_dot_t_2 = rrr_S_dot_t_2;
-    v->rrr_S_dot_x = rrr_S_dot_x;
-    v->rrr_S_dot_y = rrr_S_dot_y;
-    v->rrr_W_1_t = rrr_W_1_t;
-    v->rrr_W_2_t = rrr_W_2_t;
-    v->rrr_bias_in_axes2_x = rrr_bias_in_axes2_x;
+    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->rrr_c_t = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i];
+    v->rrr_c_t_2 = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i];
 }
 
-INLINE void stage_rrr_A_V_X(size_t w, size_t j, const real *V, values_rrr *v)
+INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-S_ddot) acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real rrr_S_ddot_x = v->rrr_a_p_x - omega_z*v->rrr_S_dot_t_2;
-    const real rrr_S_ddot_y = v->rrr_a_p_y - omega_z*v->rrr_S_dot_t;
-    v->rrr_S_ddot_x = rrr_S_ddot_x;
-    v->rrr_S_ddot_y = rrr_S_ddot_y;
-}
-
-INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
-{
-    /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes2_y = v->rrr_c_2*m->rrr_platform_joint_offset_x[i]*v->rrr_s_2 -
-        v->rrr_r_1_in_axes1_x*v->rrr_s_2;
-    /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-    const real rrr_w_1_x = rrr_w_1_in_axes2_x*(m->rrr_base_frame_yy[i]*v->rrr_w_1_t_2 -
-        m->rrr_base_frame_yx[i]*v->rrr_w_1_t);
-    const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(m->rrr_base_frame_xy[i]*v->rrr_w_1_t_2 -
-        m->rrr_base_frame_xx[i]*v->rrr_w_1_t);
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    const real rrr_H_a_1_z = v->rrr_q_x*rrr_w_1_y - v->rrr_q_y*rrr_w_1_x;
-    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
-    v->rrr_w_1_x = rrr_w_1_x;
-    v->rrr_w_1_y = rrr_w_1_y;
-    v->rrr_H_a_1_z = rrr_H_a_1_z;
+    const real rrr_S_ddot_x = v->rrr_a_p_x + v->rrr_u_1_x;
+    const real rrr_S_ddot_y = v->rrr_a_p_y - v->rrr_u_1_t;
+    v->rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*rrr_S_ddot_x -
+        v->axis_y_rrr_axes2_x*rrr_S_ddot_y;
+    v->rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*rrr_S_ddot_y +
+        v->axis_y_rrr_axes2_x*rrr_S_ddot_x;
+    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_rel_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
+    const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_bias_in_axes2_y;
+    /* (rrr-qdd_1) acceleration of joint 1 */
+    v->rrr_qdd_1_t = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    /* (rrr-qdd_2) acceleration of joint 2 */
+    v->rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
+        v->rrr_qdd_1_t*v->rrr_r_1_in_axes2_x);
 }
 
 INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
@@ -1713,85 +1722,90 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
     const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
         m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
         m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
-    v->rrr_w_2_in_axes2_x = rrr_w_2_in_axes2_x;
-    v->rrr_d_Gamma_2_in_axes2_x = rrr_d_Gamma_2_in_axes2_x;
-    v->rrr_d_Gamma_1_in_axes2_x = rrr_d_Gamma_1_in_axes2_x;
-    v->rrr_d_c_in_axes2_xy = rrr_d_c_in_axes2_xy;
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v->rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x)
+        - m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_1_in_axes2_x*v->rrr_w_1_in_axes2_x -
+        rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+    const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
+        v->axis_x_rrr_axes2_x*rrr_Q_t_2;
+    const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
+        v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+    v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    /* (M_ta) coupling block of M */
+    v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
+    v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
+    /* (M_aa) rotational block of M */
+    v->rrr_M_aa_t = v->rrr_M_ta_t_2*v->rrr_q_x - v->rrr_M_ta_t*v->rrr_q_y;
 }
 
-INLINE void stage_rrr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_rrr *v)
+INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_yx = s[1*w + j];
-    const real t_x = X[0*w + j];
-    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + R_xx*m->rrr_platform_point_x[i] -
-        R_yx*m->rrr_platform_point_y[i];
-    const real t_y = X[1*w + j];
-    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + R_xx*m->rrr_platform_point_y[i] +
-        R_yx*m->rrr_platform_point_x[i];
-    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 1 */
-    const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
-    /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
-        rrr_S_y*m->rrr_base_frame_yx[i]);
-    /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
-        rrr_S_y*m->rrr_base_frame_yy[i]);
-    /* (rrr-rho2_1) squared amplitude */
-    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-    /* (rrr-disc_1) discriminant */
-    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-    /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
-    /* (rrr-q_1) displacement of joint 1 */
-    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-    /* (rrr-x_2) from the origin of joint 2 to the connection point */
-    const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
-        m->rrr_joint2_offset_x[i];
-    v->rrr_Kd_1 = rrr_Kd_1;
-    v->rrr_Kc_1 = rrr_Kc_1;
-    v->rrr_Ks_1 = rrr_Ks_1;
-    v->rrr_rho2_1 = rrr_rho2_1;
-    v->rrr_disc_1 = rrr_disc_1;
-    v->rrr_root_1 = rrr_root_1;
-    v->inv_rrr_rho2_1 = inv_rrr_rho2_1;
-    v->rrr_x_2_in_axes1_x = rrr_x_2_in_axes1_x;
+    /* (rrr-u_1) centripetal acceleration of the connection point */
+    const real rrr_u_1_in_axes2_x = v->axis_x_rrr_axes2_x*v->rrr_u_1_x +
+        v->axis_y_rrr_axes2_x*v->rrr_u_1_t;
+    const real rrr_u_1_in_axes2_y = v->axis_y_rrr_axes2_x*v->rrr_u_1_x -
+        v->axis_x_rrr_axes2_x*v->rrr_u_1_t;
+    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v->rrr_bias_in_axes2_x;
+    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - v->rrr_bias_in_axes2_y;
+    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+    const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
+        rrr_B_1_o_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x - v->rrr_g_in_axes2_x;
+    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v->rrr_g_in_axes2_y;
+    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
+    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_mu_1_o_in_axes1_z = -v->rrr_mu_1_t_3 -
+        rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
+    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rrr_c_o_in_axes2_x = v->rrr_c_t +
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
+        v->rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v->rrr_r_1_in_axes2_x -
+        rrr_N_1_o_in_axes1_z);
+    const real rrr_c_o_in_axes2_y = v->rrr_c_t_2 -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
+    /* (rrr-U) velocity and gravity terms of the leg force */
+    v->rrr_U_x = -v->axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
+    v->rrr_U_y = v->axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    /* (Z_a) rotational part of Z */
+    v->rrr_Z_a_t = v->rrr_U_y*v->rrr_q_x - v->rrr_U_x*v->rrr_q_y;
 }
 
 INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-S_ddot) acceleration of the connection point */
-    const real rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*v->rrr_S_ddot_x -
-        v->axis_y_rrr_axes2_x*v->rrr_S_ddot_y;
-    const real rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*v->rrr_S_ddot_y +
-        v->axis_y_rrr_axes2_x*v->rrr_S_ddot_x;
-    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
-        v->rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
-    /* (rrr-B_1) acceleration tensor of link 1 */
-    const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
     /* (rrr-alpha_2) angular acceleration of link 2 */
-    const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
-        rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
+    const real rrr_alpha_2_in_axes2_z = v->rrr_qdd_2 - v->rrr_qdd_1_t;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_in_axes2_x = v->axis_y_rrr_axes2_x*m->gravity_y -
-        v->axis_x_rrr_axes2_x*m->gravity_x + rrr_S_ddot_in_axes2_x;
-    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
-        v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
+    v->rrr_acc_2_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_g_in_axes2_x;
+    v->rrr_acc_2_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_g_in_axes2_y;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_mu_2_in_axes2_z = rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+    const real rrr_mu_2_in_axes2_z = v->rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        v->rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v->rrr_s_1) -
-        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1)
-        - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
+    const real rrr_mu_1_in_axes1_z = -v->rrr_mu_1_t_3 -
+        m->rrr_J_1_in_spec1_zz[i]*v->rrr_qdd_1_t;
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
@@ -1800,42 +1814,38 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
     const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_in_axes2_x = v->rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
+    v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_in_axes2_y;
-    v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
-    v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
-    v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
-    v->rrr_c_in_axes2_y = rrr_c_in_axes2_y;
+    v->rrr_c_in_axes2_y = v->rrr_c_t_2 - rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] -
+        rrr_G_in_axes2_y;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    values *v, real *s)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->h_star_x;
-    s[3*w + k] = v->h_star_y;
+    s[2*w + k] = v->W_p_xx;
+    s[3*w + k] = v->h_star_x;
+    s[4*w + k] = v->h_star_y;
 }
 
-INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
-    *s)
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
-    stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
-    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->f_p_t - m->Z_p_t;
+    const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
-    s[4*w + k] = Z_p_x;
-    s[5*w + k] = Z_p_y;
-    s[6*w + k] = Z_q_z;
+    s[5*w + k] = Z_p_x;
+    s[6*w + k] = Z_p_y;
+    s[7*w + k] = Z_q_z;
 }
 
 INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -1843,34 +1853,13 @@ INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t i, size_t j,
 {
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
+    stage_crank_V_X(m, w, i, j, s, V, &v);
     stage_crank_M_dynamics(m, i, &v);
-    stage_crank_constraint_bias_dynamics(w, j, V, &v);
-    /* (crank-u_1) centripetal acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real crank_u_1_x = -v.crank_S_dot_t_2*omega_z;
-    const real crank_u_1_t = v.crank_S_dot_t*omega_z;
+    stage_crank_Z_dynamics(m, i, &v);
     /* (crank-rel_o) remainder of: acceleration of the connection point left to the joint
        accelerations */
-    const real crank_rel_o_in_axes1_x = v.axis_x_crank_axes1_x*crank_u_1_x +
-        v.axis_y_crank_axes1_x*crank_u_1_t +
-        v.crank_S_dot_in_axes1_y*v.crank_S_dot_in_axes1_y*m->crank_w_1_in_axes1_y[i];
-    /* (crank-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real crank_mu_1_o_in_axes1_z =
-        m->crank_h_1_in_spec1_y[i]*(v.crank_c_1*m->crank_mu_1_t[i] +
-        m->crank_mu_1_t_2[i]*v.crank_s_1) -
-        m->crank_h_1_in_spec1_x[i]*(v.crank_c_1*m->crank_mu_1_t_2[i] -
-        m->crank_mu_1_t[i]*v.crank_s_1) +
-        m->crank_J_1_in_spec1_zz[i]*m->crank_w_1_in_axes1_y[i]*(v.axis_y_crank_axes1_x*crank_u_1_x
-        - v.axis_x_crank_axes1_x*crank_u_1_t);
-    /* (crank-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*m->crank_w_1_in_axes1_y[i];
-    /* (crank-U) velocity and gravity terms of the leg force */
-    const real crank_U_x = v.axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
-    const real crank_U_y = v.axis_x_crank_axes1_x*crank_G_o_in_axes1_y;
-    /* (Z_a) rotational part of Z */
-    const real crank_Z_a_t = crank_U_y*v.crank_q_x - crank_U_x*v.crank_q_y;
+    const real crank_rel_o_in_axes1_x = v.axis_x_crank_axes1_x*v.crank_u_1_x -
+        v.axis_y_crank_axes1_x*v.crank_u_1_y + v.crank_S_dot_in_axes1_y*v.crank_qd_1;
     /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
     const real crank_gamma_c1 = m->crank_n_c_in_axes1_x[i]*crank_rel_o_in_axes1_x;
@@ -1884,10 +1873,10 @@ INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t i, size_t j,
     /* (M_aa) rotational block of M */
     gather(&terms[5*count + k], add, v.crank_M_aa_t);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[6*count + k], add, crank_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, crank_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[8*count + k], add, crank_Z_a_t);  /* Z_a_z_of_legs */
+    gather(&terms[6*count + k], add, v.crank_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, v.crank_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[8*count + k], add, v.crank_Z_a_t);  /* Z_a_z_of_legs */
     /* (crank-w_1) reciprocal vector 1 */
     o[0*count + k] = v.crank_w_1_x;
     o[1*count + k] = v.crank_w_1_y;
@@ -1907,7 +1896,7 @@ INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t i, size_t j,
 }
 
 INLINE void dynamics_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, real *Hk, real *constraint_bias, verdict *t)
+    *H, real *Hk, real *constraint_bias, status_flags *t)
 {
     H[0*w + k] = o[0*count + at];
     H[NU*w + k] = o[1*count + at];
@@ -1927,106 +1916,34 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (rrr-u_1) centripetal acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
-    const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
-    const real rrr_u_1_in_axes2_x = v.axis_x_rrr_axes2_x*rrr_u_1_x +
-        v.axis_y_rrr_axes2_x*rrr_u_1_t;
-    const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
-        v.axis_x_rrr_axes2_x*rrr_u_1_t;
-    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
-    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-        v.rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
-    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-    const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
-    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
-        rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = v.axis_y_rrr_axes2_x*m->gravity_y -
-        v.axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
-    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*m->gravity_y
-        - v.axis_y_rrr_axes2_x*m->gravity_x;
-    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
-        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
-    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
-        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
-    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
-        v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
-        v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
-        v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
-        v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
-    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
-        v.axis_x_rrr_axes2_x*rrr_Q_t_2;
-    const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
-        v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
-    const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
-    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
-    /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
-        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
-    const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-    /* (M_ta) */
-    const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
-    const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
-    /* (M_aa) */
-    const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
-    /* (Z_a) */
-    const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
+    stage_rrr_Z_dynamics(m, i, &v);
     /* (M_tt) */
-    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
     /* (M_ta) */
-    gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    gather(&terms[3*count + k], add, v.rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
     /* (M_aa) */
-    gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rrr_M_aa_t);  /* M_aa_zz_of_legs */
     /* (Z_t) */
-    gather(&terms[6*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[6*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
     /* (Z_a) */
-    gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
+    gather(&terms[8*count + k], add, v.rrr_Z_a_t);  /* Z_a_z_of_legs */
     /* (rrr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_w_1_x;
     o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) */
-    o[2*count + k] = rrr_H_a_1_z;
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + rrr_H_a_1_z);
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_H_a_1_z;
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void dynamics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[1*w + k] = o[0*count + at];
     H[(NU + 1)*w + k] = o[1*count + at];
@@ -2037,7 +1954,7 @@ INLINE void dynamics_place_rrr(size_t w, size_t k, size_t at, size_t count, cons
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2046,24 +1963,24 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[3*w + k];
+    const real h_star_y = s[4*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[2*w + k];
+    const real h_star_x = s[3*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
-    const real Z_p_x = s[4*w + k];
+    const real Z_p_x = s[5*w + k];
     const real Z_t_x_of_legs = sums[6*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[5*w + k];
+    const real Z_p_y = s[6*w + k];
     const real Z_t_y_of_legs = sums[7*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[8*w + k];
-    const real Z_q_z = s[6*w + k];
+    const real Z_q_z = s[7*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2088,13 +2005,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, real *Hk, real *constraint_bias, verdict *t)
+    *H, real *Hk, real *constraint_bias, status_flags *t)
 {
-    real s[7] = {0}, sums[9] = {0};
+    real s[8] = {0}, sums[9] = {0};
     real terms_crank[9*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     values v;
-    dynamics_before(m, 1, 0, X, &v, s);
+    dynamics_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         dynamics_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, V, terms_crank, o_crank);
     }
@@ -2115,21 +2032,21 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    dynamics_between(m, 1, 0, V, &v, s);
+    dynamics_between(m, 1, 0, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias, verdict
-    *restrict t)
+    real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
+    status_flags *restrict t)
 {
-    real s[7*LANES], sums[9*LANES];
+    real s[8*LANES], sums[9*LANES];
     real o_crank[9*LANES];
     real o_rrr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s);
-        dynamics_between(m, LANES, k, V, &v, s);
+        dynamics_before(m, LANES, k, X, V, &v, s);
+        dynamics_between(m, LANES, k, &v, s);
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
@@ -2159,8 +2076,8 @@ INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, value
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->h_star_x;
-    s[3*w + k] = v->h_star_y;
+    s[3*w + k] = v->h_star_x;
+    s[4*w + k] = v->h_star_y;
 }
 
 INLINE void M_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2182,7 +2099,7 @@ INLINE void M_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void M_place_crank(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_crank(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -2193,52 +2110,28 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
-    const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
-    const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
-        rrr_Q_t*m->rrr_base_frame_xx[i];
-    const real axis_x_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_yy[i] -
-        rrr_Q_t*m->rrr_base_frame_yx[i];
-    const real rrr_Q_t_3 = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
-        v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
-        v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
-        v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
-    const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-    const real rrr_Q_t_5 = axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
-        axis_x_rrr_axes2_x*rrr_Q_t_4;
-    const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
-        axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
-    const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
-    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
-    /* (M_ta) */
-    const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
-    const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
-    /* (M_aa) */
-    const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
     /* (M_tt) */
-    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
     /* (M_ta) */
-    gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    gather(&terms[3*count + k], add, v.rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
     /* (M_aa) */
-    gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rrr_M_aa_t);  /* M_aa_zz_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2247,10 +2140,10 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[3*w + k];
+    const real h_star_y = s[4*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[2*w + k];
+    const real h_star_x = s[3*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
@@ -2271,9 +2164,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[4] = {0}, sums[6] = {0};
+    real s[5] = {0}, sums[6] = {0};
     real terms_crank[6*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     values v;
@@ -2301,9 +2194,10 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
-    real s[4*LANES], sums[6*LANES];
+    real s[5*LANES], sums[6*LANES];
     real o_crank[LANES];
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -2333,24 +2227,27 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, values
+    *v, real *s)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->W_p_xx;
 }
 
-INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+INLINE void Z_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
-    stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
-    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->f_p_t - m->Z_p_t;
+    const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
-    s[2*w + k] = Z_p_x;
-    s[3*w + k] = Z_p_y;
-    s[4*w + k] = Z_q_z;
+    s[3*w + k] = Z_p_x;
+    s[4*w + k] = Z_p_y;
+    s[5*w + k] = Z_q_z;
 }
 
 INLINE void Z_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2358,34 +2255,18 @@ INLINE void Z_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
 {
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
-    /* (crank-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real omega_z = V[2*w + j];
-    const real crank_mu_1_o_in_axes1_z =
-        m->crank_h_1_in_spec1_y[i]*(v.crank_c_1*m->crank_mu_1_t[i] +
-        m->crank_mu_1_t_2[i]*v.crank_s_1) -
-        m->crank_h_1_in_spec1_x[i]*(v.crank_c_1*m->crank_mu_1_t_2[i] -
-        m->crank_mu_1_t[i]*v.crank_s_1) +
-        m->crank_J_1_in_spec1_zz[i]*m->crank_w_1_in_axes1_y[i]*(-v.axis_x_crank_axes1_x*v.crank_q_y*omega_z*omega_z
-        - v.axis_y_crank_axes1_x*v.crank_q_x*omega_z*omega_z);
-    /* (crank-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*m->crank_w_1_in_axes1_y[i];
-    /* (crank-U) velocity and gravity terms of the leg force */
-    const real crank_U_x = v.axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
-    const real crank_U_y = v.axis_x_crank_axes1_x*crank_G_o_in_axes1_y;
-    /* (Z_a) rotational part of Z */
-    const real crank_Z_a_t = crank_U_y*v.crank_q_x - crank_U_x*v.crank_q_y;
+    stage_crank_V_X(m, w, i, j, s, V, &v);
+    stage_crank_Z_dynamics(m, i, &v);
     /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, crank_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, crank_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[2*count + k], add, crank_Z_a_t);  /* Z_a_z_of_legs */
+    gather(&terms[0*count + k], add, v.crank_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.crank_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[2*count + k], add, v.crank_Z_a_t);  /* Z_a_z_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void Z_place_crank(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_crank(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -2396,105 +2277,35 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    /* (rrr-qd_1) rate of joint 1 */
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
-    const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
-        axis_y_rrr_axes2_x*v.rrr_S_dot_y);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-    /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
-        axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
-    /* (rrr-W_2) centripetal tensor of link 2 */
-    const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-    /* (rrr-u_1) centripetal acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
-    const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
-    const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
-        axis_y_rrr_axes2_x*rrr_u_1_t;
-    const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
-        axis_x_rrr_axes2_x*rrr_u_1_t;
-    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
-    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
-    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-        rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
-    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-    const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
-    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
-        rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = axis_y_rrr_axes2_x*m->gravity_y -
-        axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
-    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*m->gravity_y -
-        axis_y_rrr_axes2_x*m->gravity_x;
-    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
-        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
-    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
-        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
-    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rrr_c_o_in_axes2_x = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
-        v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
-    /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
-        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
-    const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-    /* (Z_a) */
-    const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
+    stage_rrr_Z_dynamics(m, i, &v);
     /* (Z_t) */
-    gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
     /* (Z_a) */
-    gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
+    gather(&terms[2*count + k], add, v.rrr_Z_a_t);  /* Z_a_z_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
-    const real Z_p_x = s[2*w + k];
+    const real Z_p_x = s[3*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[3*w + k];
+    const real Z_p_y = s[4*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[2*w + k];
-    const real Z_q_z = s[4*w + k];
+    const real Z_q_z = s[5*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
@@ -2504,13 +2315,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
+    real s[6] = {0}, sums[3] = {0};
     real terms_crank[3*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     values v;
-    Z_before(m, 1, 0, X, &v, s);
+    Z_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         Z_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, V, terms_crank, o_crank);
     }
@@ -2531,20 +2342,20 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    Z_between(m, 1, 0, V, &v, s);
+    Z_between(m, 1, 0, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
-    real s[5*LANES], sums[3*LANES];
+    real s[6*LANES], sums[3*LANES];
     real o_crank[LANES];
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s);
-        Z_between(m, LANES, k, V, &v, s);
+        Z_before(m, LANES, k, X, V, &v, s);
+        Z_between(m, LANES, k, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
@@ -2582,24 +2393,17 @@ INLINE void H_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
     /* (crank-w_1) reciprocal vector 1 */
-    const real crank_w_1_x = m->crank_w_1_in_axes1_y[i]*(m->crank_base_frame_xy[i]*v.crank_c_1
-        - m->crank_base_frame_xx[i]*v.crank_s_1);
-    const real crank_w_1_y = m->crank_w_1_in_axes1_y[i]*(m->crank_base_frame_yy[i]*v.crank_c_1
-        - m->crank_base_frame_yx[i]*v.crank_s_1);
+    o[0*count + k] = v.crank_w_1_x;
+    o[1*count + k] = v.crank_w_1_y;
     /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-    const real crank_H_a_1_z = v.crank_q_x*crank_w_1_y - v.crank_q_y*crank_w_1_x;
-    /* (crank-w_1) */
-    o[0*count + k] = crank_w_1_x;
-    o[1*count + k] = crank_w_1_y;
-    /* (crank-H_a_1) */
-    o[2*count + k] = crank_H_a_1_z;
-    o[4*count + k] = crank_w_1_x + (crank_w_1_y + crank_H_a_1_z);
+    o[2*count + k] = v.crank_H_a_1_z;
+    o[4*count + k] = v.crank_w_1_x + (v.crank_w_1_y + v.crank_H_a_1_z);
     o[3*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
 INLINE void H_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    verdict *t)
+    status_flags *t)
 {
     H[0*w + k] = o[0*count + at];
     H[NU*w + k] = o[1*count + at];
@@ -2613,7 +2417,6 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    stage_rrr_H_condition(m, i, &v);
     /* (rrr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_w_1_x;
     o[1*count + k] = v.rrr_w_1_y;
@@ -2626,7 +2429,7 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 }
 
 INLINE void H_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    verdict *t)
+    status_flags *t)
 {
     H[1*w + k] = o[0*count + at];
     H[(NU + 1)*w + k] = o[1*count + at];
@@ -2636,9 +2439,9 @@ INLINE void H_place_rrr(size_t w, size_t k, size_t at, size_t count, const real 
     t->total[k] += o[5*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_crank[5*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     values v;
@@ -2657,9 +2460,10 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_crank[5*LANES];
     real o_rrr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -2698,25 +2502,17 @@ INLINE void Hk_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
     /* (crank-n_c) direction of the constraint force */
-    const real crank_n_c_x = m->crank_n_c_in_axes1_x[i]*(m->crank_base_frame_yy[i]*v.crank_c_1
-        - m->crank_base_frame_yx[i]*v.crank_s_1);
-    const real crank_n_c_y =
-        -m->crank_n_c_in_axes1_x[i]*(m->crank_base_frame_xy[i]*v.crank_c_1 -
-        m->crank_base_frame_xx[i]*v.crank_s_1);
+    o[0*count + k] = v.crank_n_c_x;
+    o[1*count + k] = v.crank_n_c_y;
     /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real crank_Hk_a_1_z = crank_n_c_y*v.crank_q_x - crank_n_c_x*v.crank_q_y;
-    /* (crank-n_c) */
-    o[0*count + k] = crank_n_c_x;
-    o[1*count + k] = crank_n_c_y;
-    /* (crank-Hk_a_1) */
-    o[2*count + k] = crank_Hk_a_1_z;
-    o[4*count + k] = crank_n_c_x + (crank_n_c_y + crank_Hk_a_1_z);
+    o[2*count + k] = v.crank_Hk_a_1_z;
+    o[4*count + k] = v.crank_n_c_x + (v.crank_n_c_y + v.crank_Hk_a_1_z);
     o[3*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
 INLINE void Hk_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real *Hk,
-    verdict *t)
+    status_flags *t)
 {
     Hk[0*w + k] = o[0*count + at];
     Hk[NC*w + k] = o[1*count + at];
@@ -2725,9 +2521,9 @@ INLINE void Hk_place_crank(size_t w, size_t k, size_t at, size_t count, const re
     t->total[k] += o[4*count + at];
 }
 
-APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
+APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_crank[5*LEGS(LEGS_OF_crank)] = {0};
     values v;
     Hk_before(m, 1, 0, X, &v, s);
@@ -2739,9 +2535,10 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
     }
 }
 
-INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, verdict *restrict t)
+INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, status_flags
+    *restrict t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_crank[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2758,12 +2555,14 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, ve
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s)
+INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, const
+    real *V, values *v, real *s)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->W_p_xx;
 }
 
 INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -2771,13 +2570,11 @@ INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t i, si
 {
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
-    stage_crank_constraint_bias_dynamics(w, j, V, &v);
+    stage_crank_V_X(m, w, i, j, s, V, &v);
     /* (crank-rel_o) remainder of: acceleration of the connection point left to the joint
        accelerations */
-    const real omega_z = V[2*w + j];
-    const real crank_rel_o_in_axes1_x = v.axis_y_crank_axes1_x*v.crank_S_dot_t*omega_z -
-        v.axis_x_crank_axes1_x*v.crank_S_dot_t_2*omega_z +
-        v.crank_S_dot_in_axes1_y*v.crank_S_dot_in_axes1_y*m->crank_w_1_in_axes1_y[i];
+    const real crank_rel_o_in_axes1_x = v.axis_x_crank_axes1_x*v.crank_u_1_x -
+        v.axis_y_crank_axes1_x*v.crank_u_1_y + v.crank_S_dot_in_axes1_y*v.crank_qd_1;
     /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
     const real crank_gamma_c1 = m->crank_n_c_in_axes1_x[i]*crank_rel_o_in_axes1_x;
@@ -2789,7 +2586,7 @@ INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t i, si
 }
 
 INLINE void constraint_bias_place_crank(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *constraint_bias, verdict *t)
+    *o, real *constraint_bias, status_flags *t)
 {
     constraint_bias[0*w + k] = o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -2797,12 +2594,12 @@ INLINE void constraint_bias_place_crank(size_t w, size_t k, size_t at, size_t co
 }
 
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
-    *constraint_bias, verdict *t)
+    *constraint_bias, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     values v;
-    constraint_bias_before(m, 1, 0, X, &v, s);
+    constraint_bias_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         constraint_bias_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, o_crank);
     }
@@ -2812,13 +2609,13 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 }
 
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
-    *restrict constraint_bias, verdict *restrict t)
+    *restrict constraint_bias, status_flags *restrict t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_crank[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        constraint_bias_before(m, LANES, k, X, &v, s);
+        constraint_bias_before(m, LANES, k, X, V, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2831,18 +2628,20 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
-INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
     values *v, real *s)
 {
     stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->W_p_xx;
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *A, values *v, real
+    *s)
+{
+    stage_V_X(v);
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -2850,13 +2649,13 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     /* (f_p) inertia force of the platform less its weight */
     const real alpha_z = A[2*w + k];
-    const real f_p_x = a_t_x*m->m_star + v->W_p_xx*v->h_star_x - alpha_z*v->h_star_y;
-    const real f_p_y = a_t_y*m->m_star + v->W_p_xx*v->h_star_y + alpha_z*v->h_star_x;
+    const real f_p_x = a_t_x*m->m_star - alpha_z*v->h_star_y + v->f_p_t;
+    const real f_p_y = a_t_y*m->m_star + alpha_z*v->h_star_x - v->f_p_t_2;
     /* (mu_p) inertia moment of the platform less that of its weight */
     const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v->h_star_x - a_t_x*v->h_star_y;
-    s[2*w + k] = f_p_x;
-    s[3*w + k] = f_p_y;
-    s[4*w + k] = mu_p_z;
+    s[3*w + k] = f_p_x;
+    s[4*w + k] = f_p_y;
+    s[5*w + k] = mu_p_z;
 }
 
 INLINE void required_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2866,7 +2665,8 @@ INLINE void required_legs_crank(const prepared *m, size_t w, size_t i, size_t j,
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
     stage_crank_A_X(w, j, A, &v);
-    stage_crank_A_V_X(w, j, V, &v);
+    stage_crank_V_X(m, w, i, j, s, V, &v);
+    stage_crank_A_V_X(m, w, i, j, V, &v);
     stage_crank_legs_required(m, i, &v);
     /* (R_a) moment that actuators and external wrench must give */
     const real crank_R_a_t = v.crank_c_t_2*v.crank_q_x - v.crank_c_t*v.crank_q_y;
@@ -2890,7 +2690,7 @@ INLINE void required_legs_crank(const prepared *m, size_t w, size_t i, size_t j,
 }
 
 INLINE void required_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, real *Hk, verdict *t)
+    *H, real *Hk, status_flags *t)
 {
     H[0*w + k] = o[0*count + at];
     H[NU*w + k] = o[1*count + at];
@@ -2909,7 +2709,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_A_V_X(w, j, V, &v);
+    stage_rrr_A_V_X(m, i, &v);
     stage_rrr_legs_required(m, i, &v);
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -2919,8 +2719,6 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
     /* (R_a) */
     const real rrr_R_a_t = rrr_c_x*v.rrr_q_y - rrr_c_y*v.rrr_q_x;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
     /* (R_t) */
     gather(&terms[3*count + k], add, rrr_c_x);  /* R_t_t */
     gather(&terms[4*count + k], add, rrr_c_y);  /* R_t_t_2 */
@@ -2929,15 +2727,15 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     /* (rrr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_w_1_x;
     o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) */
-    o[2*count + k] = rrr_H_a_1_z;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_H_a_1_z;
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[1*w + k] = o[0*count + at];
     H[(NU + 1)*w + k] = o[1*count + at];
@@ -2951,15 +2749,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_t) */
     const real R_t_t = sums[3*w + k];
     const real R_t_x_of_legs = sums[0*w + k];
-    const real f_p_x = s[2*w + k];
+    const real f_p_x = s[3*w + k];
     const real R_t_x = f_p_x + R_t_x_of_legs - R_t_t;
     const real R_t_t_2 = sums[4*w + k];
     const real R_t_y_of_legs = sums[1*w + k];
-    const real f_p_y = s[3*w + k];
+    const real f_p_y = s[4*w + k];
     const real R_t_y = f_p_y + R_t_y_of_legs - R_t_t_2;
     /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
-    const real mu_p_z = s[4*w + k];
+    const real mu_p_z = s[5*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
@@ -2969,13 +2767,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, real *Hk, verdict *t)
+    *required, real *H, real *Hk, status_flags *t)
 {
-    real s[5] = {0}, sums[5] = {0};
+    real s[6] = {0}, sums[5] = {0};
     real terms_crank[5*LEGS(LEGS_OF_crank)] = {0}, o_crank[7*LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     values v;
-    required_before(m, 1, 0, X, &v, s);
+    required_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         required_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, V, A, terms_crank, o_crank);
     }
@@ -2996,20 +2794,20 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    required_between(m, 1, 0, V, A, &v, s);
+    required_between(m, 1, 0, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, real *restrict Hk, verdict *restrict t)
+    real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
-    real s[5*LANES], sums[5*LANES];
+    real s[6*LANES], sums[5*LANES];
     real o_crank[7*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s);
-        required_between(m, LANES, k, V, A, &v, s);
+        required_before(m, LANES, k, X, V, &v, s);
+        required_between(m, LANES, k, A, &v, s);
     }
     clear(sums, 5*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
@@ -3045,36 +2843,19 @@ INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, con
 INLINE void inverse_kinematics_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, real *o)
 {
-    /* (crank-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_yx = s[1*w + j];
-    const real t_x = X[0*w + j];
-    const real crank_S_x = t_x - m->crank_base_point_x[i] + R_xx*m->crank_platform_point_x[i]
-        - R_yx*m->crank_platform_point_y[i];
-    const real t_y = X[1*w + j];
-    const real crank_S_y = t_y - m->crank_base_point_y[i] + R_xx*m->crank_platform_point_y[i]
-        + R_yx*m->crank_platform_point_x[i];
-    const real crank_S_in_turn1_x = crank_S_x*m->crank_base_frame_xx[i] +
-        crank_S_y*m->crank_base_frame_yx[i];
-    const real crank_S_in_turn1_y = crank_S_x*m->crank_base_frame_xy[i] +
-        crank_S_y*m->crank_base_frame_yy[i];
-    /* (crank-rho2_1) squared amplitude */
-    const real crank_rho2_1 = m->crank_size_t[i]*(crank_S_in_turn1_x*crank_S_in_turn1_x +
-        crank_S_in_turn1_y*crank_S_in_turn1_y);
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
     /* (crank-q_1) displacement of joint 1 */
-    const real crank_q_1_t = 1/(root(crank_rho2_1));
-    const real crank_q_1 =
-        angle(crank_S_in_turn1_y*m->crank_platform_joint_offset_x[i]*crank_q_1_t,
-        crank_S_in_turn1_x*m->crank_platform_joint_offset_x[i]*crank_q_1_t);
+    const real crank_q_1 = angle(v.crank_s_1, v.crank_c_1);
     /* (crank-q_1) */
     o[0*count + k] = crank_q_1;
     o[2*count + k] = crank_q_1;
-    o[1*count + k] = UNLESS(magnitude(crank_rho2_1) >
+    o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
 INLINE void inverse_kinematics_place_crank(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *q, verdict *t)
+    *o, real *q, status_flags *t)
 {
     q[0*w + k] = o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -3085,15 +2866,11 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     size_t count, const real *s, const real *X, real *o)
 {
     values_rrr v;
-    stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    stage_rrr_X(m, w, i, j, s, X, &v);
     /* (rrr-q_1) displacement of joint 1 */
-    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 +
-        v.rrr_Kc_1*v.rrr_root_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
-        v.rrr_Ks_1*v.rrr_root_1));
+    const real rrr_q_1 = angle(v.rrr_s_1, v.rrr_c_1);
     /* (rrr-q_2) displacement of joint 2 */
-    const real rrr_q_2 =
-        angle(-m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1,
-        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x);
+    const real rrr_q_2 = angle(v.rrr_s_2, v.rrr_c_2);
     /* (rrr-q_1) */
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
@@ -3104,7 +2881,7 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
 }
 
 INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *q, verdict *t)
+    *o, real *q, status_flags *t)
 {
     q[1*w + k] = o[0*count + at];
     q[2*w + k] = o[1*count + at];
@@ -3113,9 +2890,9 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t c
     t->total[k] += o[4*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     values v;
@@ -3135,9 +2912,9 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_crank[3*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -3163,12 +2940,14 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, const real
+    *V, values *v, real *s)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->W_p_xx;
 }
 
 INLINE void joint_rates_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3176,27 +2955,16 @@ INLINE void joint_rates_legs_crank(const prepared *m, size_t w, size_t i, size_t
 {
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
-    /* (crank-S_dot) velocity of the connection point */
-    const real omega_z = V[2*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real crank_S_dot_x = t_dot_x - v.crank_q_y*omega_z;
-    const real t_dot_y = V[1*w + j];
-    const real crank_S_dot_y = t_dot_y + v.crank_q_x*omega_z;
+    stage_crank_V_X(m, w, i, j, s, V, &v);
     /* (crank-qd_1) rate of joint 1 */
-    const real crank_qd_1 =
-        m->crank_w_1_in_axes1_y[i]*(crank_S_dot_x*(m->crank_base_frame_xy[i]*v.crank_c_1 -
-        m->crank_base_frame_xx[i]*v.crank_s_1) +
-        crank_S_dot_y*(m->crank_base_frame_yy[i]*v.crank_c_1 -
-        m->crank_base_frame_yx[i]*v.crank_s_1));
-    /* (crank-qd_1) */
-    o[0*count + k] = crank_qd_1;
-    o[2*count + k] = crank_qd_1;
+    o[0*count + k] = v.crank_qd_1;
+    o[2*count + k] = v.crank_qd_1;
     o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
 INLINE void joint_rates_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o,
-    real *qd, verdict *t)
+    real *qd, status_flags *t)
 {
     qd[0*w + k] = o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -3208,35 +2976,19 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    /* (rrr-S_dot) velocity of the connection point */
-    const real omega_z = V[2*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real rrr_S_dot_x = t_dot_x - omega_z*v.rrr_q_y;
-    const real t_dot_y = V[1*w + j];
-    const real rrr_S_dot_y = t_dot_y + omega_z*v.rrr_q_x;
+    stage_rrr_V_X(m, w, i, j, V, &v);
     /* (rrr-qd_1) rate of joint 1 */
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
-    const real rrr_qd_1 = -(axis_x_rrr_axes2_x*rrr_S_dot_x -
-        axis_y_rrr_axes2_x*rrr_S_dot_y)/v.rrr_r_1_in_axes2_y;
+    o[0*count + k] = v.rrr_qd_1;
     /* (rrr-qd_2) rate of joint 2 */
-    const real rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-        axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
-        v.rrr_r_1_in_axes1_y*v.rrr_s_2));
-    /* (rrr-qd_1) */
-    o[0*count + k] = rrr_qd_1;
-    /* (rrr-qd_2) */
-    o[1*count + k] = rrr_qd_2;
-    o[4*count + k] = rrr_qd_1 + rrr_qd_2;
+    o[1*count + k] = v.rrr_qd_2;
+    o[4*count + k] = v.rrr_qd_1 + v.rrr_qd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *qd, verdict *t)
+    *qd, status_flags *t)
 {
     qd[1*w + k] = o[0*count + at];
     qd[2*w + k] = o[1*count + at];
@@ -3245,13 +2997,14 @@ INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, c
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s);
+    joint_rates_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         joint_rates_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, o_crank);
     }
@@ -3267,14 +3020,14 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_crank[3*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s);
+        joint_rates_before(m, LANES, k, X, V, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3295,12 +3048,14 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
+    real *V, values *v, real *s)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->W_p_xx;
 }
 
 INLINE void joint_accelerations_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3309,22 +3064,17 @@ INLINE void joint_accelerations_legs_crank(const prepared *m, size_t w, size_t i
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
     stage_crank_A_X(w, j, A, &v);
-    stage_crank_A_V_X(w, j, V, &v);
+    stage_crank_V_X(m, w, i, j, s, V, &v);
+    stage_crank_A_V_X(m, w, i, j, V, &v);
     /* (crank-qdd_1) acceleration of joint 1 */
-    const real crank_qdd_1 =
-        m->crank_w_1_in_axes1_y[i]*(v.crank_S_ddot_x*(m->crank_base_frame_xy[i]*v.crank_c_1 -
-        m->crank_base_frame_xx[i]*v.crank_s_1) +
-        v.crank_S_ddot_y*(m->crank_base_frame_yy[i]*v.crank_c_1 -
-        m->crank_base_frame_yx[i]*v.crank_s_1));
-    /* (crank-qdd_1) */
-    o[0*count + k] = crank_qdd_1;
-    o[2*count + k] = crank_qdd_1;
+    o[0*count + k] = v.crank_qdd_1;
+    o[2*count + k] = v.crank_qdd_1;
     o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
 INLINE void joint_accelerations_place_crank(size_t w, size_t k, size_t at, size_t count, const
-    real *o, real *qdd, verdict *t)
+    real *o, real *qdd, status_flags *t)
 {
     qdd[0*w + k] = o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -3338,45 +3088,19 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_A_V_X(w, j, V, &v);
-    /* (rrr-qd_1) rate of joint 1 */
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
-    const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
-        axis_y_rrr_axes2_x*v.rrr_S_dot_y);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-    /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
-        axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
-    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
-    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x -
-        axis_y_rrr_axes2_x*v.rrr_S_ddot_y - rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
-        axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    stage_rrr_A_V_X(m, i, &v);
     /* (rrr-qdd_1) acceleration of joint 1 */
-    const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*v.rrr_w_1_in_axes2_x;
+    o[0*count + k] = -v.rrr_qdd_1_t;
     /* (rrr-qdd_2) acceleration of joint 2 */
-    const real rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
-        rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
-    /* (rrr-qdd_1) */
-    o[0*count + k] = -rrr_qdd_1_t;
-    /* (rrr-qdd_2) */
-    o[1*count + k] = rrr_qdd_2;
-    o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
+    o[1*count + k] = v.rrr_qdd_2;
+    o[4*count + k] = v.rrr_qdd_1_t + v.rrr_qdd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *qdd, verdict *t)
+    *o, real *qdd, status_flags *t)
 {
     qdd[1*w + k] = o[0*count + at];
     qdd[2*w + k] = o[1*count + at];
@@ -3386,13 +3110,13 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t 
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s);
+    joint_accelerations_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         joint_accelerations_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, A, o_crank);
     }
@@ -3408,14 +3132,14 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_crank[3*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s);
+        joint_accelerations_before(m, LANES, k, X, V, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3447,46 +3171,29 @@ INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real
 INLINE void constraints_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
-    /* (crank-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_yx = s[1*w + j];
-    const real t_x = X[0*w + j];
-    const real crank_S_x = t_x - m->crank_base_point_x[i] + R_xx*m->crank_platform_point_x[i]
-        - R_yx*m->crank_platform_point_y[i];
-    const real t_y = X[1*w + j];
-    const real crank_S_y = t_y - m->crank_base_point_y[i] + R_xx*m->crank_platform_point_y[i]
-        + R_yx*m->crank_platform_point_x[i];
-    const real crank_S_in_turn1_x = crank_S_x*m->crank_base_frame_xx[i] +
-        crank_S_y*m->crank_base_frame_yx[i];
-    const real crank_S_in_turn1_y = crank_S_x*m->crank_base_frame_xy[i] +
-        crank_S_y*m->crank_base_frame_yy[i];
-    /* (crank-rho2_1) squared amplitude */
-    const real crank_rho2_1 = m->crank_size_t[i]*(crank_S_in_turn1_x*crank_S_in_turn1_x +
-        crank_S_in_turn1_y*crank_S_in_turn1_y);
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
     /* (crank-phi_c1) loop-closure residual along the constraint force */
-    const real crank_phi_c1_t = 1/(root(crank_rho2_1));
-    const real crank_phi_c1 =
-        m->crank_n_c_in_axes1_x[i]*(crank_S_in_turn1_x*crank_S_in_turn1_x*crank_phi_c1_t*m->crank_platform_joint_offset_x[i]
-        - m->crank_platform_joint_offset_x[i] +
-        crank_S_in_turn1_y*crank_S_in_turn1_y*crank_phi_c1_t*m->crank_platform_joint_offset_x[i]);
+    const real crank_phi_c1 = m->crank_n_c_in_axes1_x[i]*(v.crank_S_in_turn1_x*v.crank_c_1 -
+        m->crank_platform_joint_offset_x[i] + v.crank_S_in_turn1_y*v.crank_s_1);
     /* (crank-phi_c1) */
     o[0*count + k] = crank_phi_c1;
     o[2*count + k] = crank_phi_c1;
-    o[1*count + k] = UNLESS(magnitude(crank_rho2_1) >
+    o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
 INLINE void constraints_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o,
-    real *constraints, verdict *t)
+    real *constraints, status_flags *t)
 {
     constraints[0*w + k] = o[0*count + at];
     t->singular[k] += o[1*count + at];
     t->total[k] += o[2*count + at];
 }
 
-APART void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
+APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     values v;
     constraints_before(m, 1, 0, X, &v, s);
@@ -3499,9 +3206,9 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 }
 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_crank[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3518,11 +3225,14 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    values *v, real *s)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->W_p_xx;
 }
 
 INLINE void legs_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3531,7 +3241,8 @@ INLINE void legs_legs_crank(const prepared *m, size_t w, size_t i, size_t j, siz
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
     stage_crank_A_X(w, j, A, &v);
-    stage_crank_A_V_X(w, j, V, &v);
+    stage_crank_V_X(m, w, i, j, s, V, &v);
+    stage_crank_A_V_X(m, w, i, j, V, &v);
     stage_crank_legs_required(m, i, &v);
     /* (crank-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -3548,7 +3259,7 @@ INLINE void legs_legs_crank(const prepared *m, size_t w, size_t i, size_t j, siz
 }
 
 INLINE void legs_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *leg_force, real *actuator, real *constraint_direction, verdict *t)
+    *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
     leg_force[0*w + k] = o[0*count + at];
     leg_force[1*w + k] = o[1*count + at];
@@ -3566,7 +3277,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_A_V_X(w, j, V, &v);
+    stage_rrr_A_V_X(m, i, &v);
     stage_rrr_legs_required(m, i, &v);
     /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
     const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
@@ -3589,7 +3300,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     leg_force[3*w + k] = o[0*count + at];
     leg_force[(3 + 1)*w + k] = o[1*count + at];
@@ -3600,16 +3311,16 @@ INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const re
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, real *constraint_direction, verdict *t)
+    *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_crank[7*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 6);
     clear(constraint_direction, 3*NC);
     values v;
-    legs_before(m, 1, 0, X, &v, s);
+    legs_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         legs_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, A, o_crank);
     }
@@ -3639,41 +3350,21 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
-    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xx*m->h_star_in_platform_x -
-        v->R_yx*m->h_star_in_platform_y) + m->gravity_y*(m->m_star*t_y +
-        v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x);
-    s[2*w + k] = potential_t;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
+        m->gravity_y*(m->m_star*t_y + v->h_star_y);
+    s[3*w + k] = potential_t;
 }
 
 INLINE void potential_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    /* (crank-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_yx = s[1*w + j];
-    const real t_x = X[0*w + j];
-    const real crank_S_x = t_x - m->crank_base_point_x[i] + R_xx*m->crank_platform_point_x[i]
-        - R_yx*m->crank_platform_point_y[i];
-    const real t_y = X[1*w + j];
-    const real crank_S_y = t_y - m->crank_base_point_y[i] + R_xx*m->crank_platform_point_y[i]
-        + R_yx*m->crank_platform_point_x[i];
-    const real crank_S_in_turn1_x = crank_S_x*m->crank_base_frame_xx[i] +
-        crank_S_y*m->crank_base_frame_yx[i];
-    const real crank_S_in_turn1_y = crank_S_x*m->crank_base_frame_xy[i] +
-        crank_S_y*m->crank_base_frame_yy[i];
-    /* (crank-rho2_1) squared amplitude */
-    const real crank_rho2_1 = m->crank_size_t[i]*(crank_S_in_turn1_x*crank_S_in_turn1_x +
-        crank_S_in_turn1_y*crank_S_in_turn1_y);
-    /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real crank_c_1_t = 1/(root(crank_rho2_1));
-    const real crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*m->crank_platform_joint_offset_x[i];
-    /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-    const real crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*m->crank_platform_joint_offset_x[i];
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
     /* (potential) */
-    const real crank_potential_t_3 = crank_c_1*m->crank_h_1_in_spec1_x[i] -
-        m->crank_h_1_in_spec1_y[i]*crank_s_1;
-    const real crank_potential_t_4 = crank_c_1*m->crank_h_1_in_spec1_y[i] +
-        m->crank_h_1_in_spec1_x[i]*crank_s_1;
+    const real crank_potential_t_3 = v.crank_c_1*m->crank_h_1_in_spec1_x[i] -
+        m->crank_h_1_in_spec1_y[i]*v.crank_s_1;
+    const real crank_potential_t_4 = v.crank_c_1*m->crank_h_1_in_spec1_y[i] +
+        m->crank_h_1_in_spec1_x[i]*v.crank_s_1;
     const real crank_potential_t_5 = m->gravity_x*(m->crank_potential_t[i] +
         m->crank_base_frame_xx[i]*crank_potential_t_3 +
         m->crank_base_frame_xy[i]*crank_potential_t_4) +
@@ -3682,11 +3373,12 @@ INLINE void potential_legs_crank(const prepared *m, size_t w, size_t i, size_t j
         m->crank_base_frame_yy[i]*crank_potential_t_4);
     /* (potential) */
     gather(&terms[0*count + k], add, -crank_potential_t_5);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(magnitude(crank_rho2_1) >
+    o[0*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void potential_place_crank(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_crank(size_t k, size_t at, size_t count, const real *o, status_flags
+    *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -3695,33 +3387,22 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
     values_rrr v;
-    stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
-    /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 + v.rrr_Kc_1*v.rrr_root_1);
-    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real rrr_c_2 =
-        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x;
-    /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rrr_s_2 =
-        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1;
+    stage_rrr_X(m, w, i, j, s, X, &v);
     /* (potential) */
-    const real rrr_potential_t_3 = (rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_x[i] +
-        rrr_c_2*m->rrr_h_2_in_spec2_x[i] + m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t[i]
-        + m->rrr_potential_t_2[i]*rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*rrr_s_2) +
-        (rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_y[i] +
-        rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
-        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] - m->rrr_potential_t[i]*rrr_s_1)
-        + m->rrr_h_2_in_spec2_x[i]*rrr_s_2);
+    const real rrr_potential_t_3 = v.rrr_g_in_axes1_x*(m->rrr_h_1_in_spec1_x[i] +
+        v.rrr_c_2*m->rrr_h_2_in_spec2_x[i] +
+        m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
+        m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
+        v.rrr_g_in_axes1_y*(m->rrr_h_1_in_spec1_y[i] + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
+        m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -3731,16 +3412,16 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 {
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
-    const real potential_t = s[2*w + k];
+    const real potential_t = s[3*w + k];
     const real potential_t_2 = sums[1*w + k];
     const real potential_ = potential_of_legs - potential_t - potential_t_2;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[3] = {0}, sums[2] = {0};
+    real s[4] = {0}, sums[2] = {0};
     real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     values v;
@@ -3771,7 +3452,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3815,7 +3496,7 @@ INLINE void condition_legs_crank(const prepared *m, size_t w, size_t i, size_t j
 }
 
 INLINE void condition_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, real *Hk, real *pivots, verdict *t)
+    *H, real *Hk, real *pivots, status_flags *t)
 {
     H[0*w + k] = o[0*count + at];
     H[NU*w + k] = o[1*count + at];
@@ -3833,7 +3514,6 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    stage_rrr_H_condition(m, i, &v);
     /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
@@ -3862,7 +3542,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, real *pivots, real *reach, verdict *t)
+    *H, real *pivots, real *reach, status_flags *t)
 {
     H[1*w + k] = o[0*count + at];
     H[(NU + 1)*w + k] = o[1*count + at];
@@ -3874,7 +3554,7 @@ INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, con
     t->total[k] += o[7*count + at];
 }
 
-INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, verdict *t)
+INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_crank = sums[0*w + k];
@@ -3886,9 +3566,9 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
-    *pivots, real *reach, verdict *t)
+    *pivots, real *reach, status_flags *t)
 {
-    real s[2] = {0}, sums[2] = {0};
+    real s[3] = {0}, sums[2] = {0};
     real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
     clear(reach, NL);
@@ -3921,249 +3601,228 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
 
 int fivebar_offset_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int fivebar_offset_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int fivebar_offset_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int fivebar_offset_Hk(const prepared *m, const real *X, real *Hk_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     Hk_run(m, X, Hk_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    return settled(&why, NV*NC, Hk_out);
+    return final_status(&why, NV*NC, Hk_out);
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
     real X_in[NQ*LANES], Hk[NV*NC*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     Hk_run_lanes(m, X, Hk, &why);
-    suspect(&why, code);
-    deliver(NV*NC, Hk, Hk_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NC, Hk, Hk_out);
 }
 
 int fivebar_offset_constraints(const prepared *m, const real *X, real *constraints_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     constraints_run(m, X, constraints_out, &why);
     if (!is_finite(why.total[0])) {
         check(1, 1, constraints_out, why.overflow);
     }
-    return settled(&why, 1, constraints_out);
+    return final_status(&why, 1, constraints_out);
 }
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
     real X_in[NQ*LANES], constraints[LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     constraints_run_lanes(m, X, constraints, &why);
-    suspect(&why, code);
-    deliver(1, constraints, constraints_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(1, constraints, constraints_out);
 }
 
 int fivebar_offset_constraint_bias(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     constraint_bias_run(m, X, V, constraint_bias_out, &why);
     if (!is_finite(why.total[0])) {
         check(1, 1, constraint_bias_out, why.overflow);
     }
-    return settled(&why, 1, constraint_bias_out);
+    return final_status(&why, 1, constraint_bias_out);
 }
 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     constraint_bias_run_lanes(m, X, V, constraint_bias, &why);
-    suspect(&why, code);
-    deliver(1, constraint_bias, constraint_bias_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(1, constraint_bias, constraint_bias_out);
 }
 
 int fivebar_offset_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int fivebar_offset_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int fivebar_offset_joint_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int fivebar_offset_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
     real Hk[NV*NC] = {0}, constraint_bias[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, Hk, constraint_bias, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
@@ -4172,9 +3831,9 @@ int fivebar_offset_dynamics(const prepared *m, const real *X, const real *V, rea
     }
     check(NV*NC, 1, Hk, why.overflow);
     check(1, 1, constraint_bias, why.overflow);
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4182,17 +3841,17 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES],
         constraint_bias[LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     add_up(NV*NC, Hk, why.total);
     add_up(1, constraint_bias, why.total);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -4251,14 +3910,9 @@ int fivebar_offset_inverse_dynamics(const prepared *m, const real *X, const real
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
         {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -4277,8 +3931,8 @@ int fivebar_offset_inverse_dynamics(const prepared *m, const real *X, const real
     check(NC, 1, lambda_, why.overflow);
     copy(NU, tau, tau_out);
     copy(NC, lambda_, lambda_out);
-    settled(&why, NU, tau_out);
-    return settled(&why, NC, lambda_out);
+    final_status(&why, NU, tau_out);
+    return final_status(&why, NC, lambda_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4287,7 +3941,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES], beside_1[NV*NV*LANES] = {0},
         solve_1[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4303,9 +3957,9 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     const real *const lambda_ = solve_1 + NU*LANES;
     add_up(NU, tau, why.total);
     add_up(NC, lambda_, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
-    deliver(NC, lambda_, lambda_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
+    copy_side_by_side(NC, lambda_, lambda_out);
 }
 
 INLINE void eliminate_4(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -4393,14 +4047,9 @@ int fivebar_offset_forward_dynamics(const prepared *m, const real *X, const real
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, constraint_bias[1] = {0},
         times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, negative_1[1] = {0}, join_1[4] =
         {0}, solve_1[(NV + NC)] = {0}, unsure_solve_1[1] = {0}, work[(NV + NC)*(PADDED(NV + NC))];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -4426,8 +4075,8 @@ int fivebar_offset_forward_dynamics(const prepared *m, const real *X, const real
     check(NC, 1, lambda_, why.overflow);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    settled(&why, NV, A_out);
-    return settled(&why, NC, lambda_out);
+    final_status(&why, NV, A_out);
+    return final_status(&why, NC, lambda_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4437,7 +4086,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[LANES], times_1[NV*LANES] = {0},
         add_1[NV*LANES], subtract_1[NV*LANES], negative_1[LANES], join_1[4*LANES] = {0}, solve_1[((NV
         + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4461,9 +4110,9 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     const real *const lambda_ = solve_1 + NV*LANES;
     add_up(NV, A, why.total);
     add_up(NC, lambda_, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
-    deliver(NC, lambda_, lambda_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
+    copy_side_by_side(NC, lambda_, lambda_out);
 }
 
 int fivebar_offset_complete_acceleration(const prepared *m, const real *X, const real *V, const
@@ -4473,13 +4122,11 @@ int fivebar_offset_complete_acceleration(const prepared *m, const real *X, const
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int fivebar_offset_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -4487,32 +4134,13 @@ int fivebar_offset_leg_reactions(const prepared *m, const real *X, const real *V
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
-        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[6] = {0},
-        constraint_direction[3*NC] = {0}, add_forces_1[3*NL] = {0}, forces[NL*(NL + NC)] = {0},
-        work[NV*PADDED(NV)];
-    verdict why;
+    real split_1[2] = {0}, split_2[1] = {0}, leg_force[3*NL] = {0}, actuator[6] = {0},
+        constraint_direction[3*NC] = {0}, add_forces_1[3*NL] = {0}, forces[NL*(NL + NC)] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, Hk, &why);
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - wrench[i];
-    }
-    beside(NV, NU, NC, H, Hk, beside_1);
-    eliminate_3(1, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NV, 1, beside_1, work);
-        solve_apart(NV, subtract_1, work, solve_1, why.singular);
-        check(NV, 1, solve_1, why.overflow);
-    }
-    const real *const split_1 = solve_1;
-    const real *const split_2 = solve_1 + 2;
+    flag_status(fivebar_offset_inverse_dynamics(m, X, V, A, wrench, split_1, split_2), &why);
     legs_run(m, X, V, A, leg_force, actuator, constraint_direction, &why);
     for (size_t i = 0; i < 3*NL; ++i) {
         add_forces_1[i] = leg_force[i];
@@ -4522,22 +4150,16 @@ int fivebar_offset_leg_reactions(const prepared *m, const real *X, const real *V
         forces[i] = add_forces_1[i];
     }
     add_forces(NC, 3, 1, places_forces, split_2, constraint_direction, forces);
-    check(NL*(NL + NC), 1, forces, why.overflow);
-    copy(NL*(NL + NC), forces, forces_out);
-    return settled(&why, NL*(NL + NC), forces_out);
+    return finished(NL*(NL + NC), forces, forces_out, &why);
 }
 
 int fivebar_offset_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -4546,8 +4168,8 @@ int fivebar_offset_energy(const prepared *m, const real *X, const real *V, real 
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int fivebar_offset_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -4557,9 +4179,9 @@ int fivebar_offset_condition(const prepared *m, const real *X, real *sigma_out, 
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
@@ -4580,8 +4202,8 @@ int fivebar_offset_condition(const prepared *m, const real *X, real *sigma_out, 
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NU, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NU, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int fivebar_offset_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
@@ -4592,9 +4214,9 @@ int fivebar_offset_condition_constrained(const prepared *m, const real *X, real 
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
@@ -4615,8 +4237,8 @@ int fivebar_offset_condition_constrained(const prepared *m, const real *X, real 
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int fivebar_offset_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4629,13 +4251,12 @@ int fivebar_offset_manipulability(const prepared *m, const real *X, real *measur
         {0}, choose_length_2[1] = {0}, divide_rows_2[NV*NC] = {0}, transposed_1[NC*NV] = {0},
         null_basis_1[2*NV] = {0}, transposed_2[2*NV] = {0}, product_1[NU*NU] = {0},
         singular_values_1[NU] = {0}, measure[1] = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4645,9 +4266,8 @@ int fivebar_offset_manipulability(const prepared *m, const real *X, real *measur
         divide_rows_1[i] = H[i];
     }
     divide_rows(1, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
-    const real *const entry_2 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_2[i] = entry_2[i] - entry_2[i];
+        subtract_2[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_2[i] = subtract_2[i] > 0 ? subtract_2[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4669,8 +4289,8 @@ int fivebar_offset_manipulability(const prepared *m, const real *X, real *measur
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int fivebar_offset_singularity_distance(const prepared *m, const real *X, real *actuators_out,
@@ -4680,14 +4300,13 @@ int fivebar_offset_singularity_distance(const prepared *m, const real *X, real *
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
         beside_1[NV*NV] = {0}, subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] =
         {0}, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
     beside(NV, NU, NC, H, Hk, beside_1);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4705,25 +4324,21 @@ int fivebar_offset_singularity_distance(const prepared *m, const real *X, real *
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
     real q[NJ] = {0}, subtract_1[NU] = {0}, wrap_turns_1[NU] = {0}, constraints[1] = {0},
-        negative_1[1] = {0}, gap[3] = {0};
-    verdict why;
+        negative_1[1] = {0}, residual[3] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    const real *const q_of_inverse_kinematics_from_0 = q;
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
+        subtract_1[i] = q_actuated[i] - q[i];
     }
     for (size_t i = 0; i < NU; ++i) {
         wrap_turns_1[i] = subtract_1[i];
@@ -4733,36 +4348,32 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     for (size_t i = 0; i < 1; ++i) {
         negative_1[i] = -constraints[i];
     }
-    beside(1, NU, 1, wrap_turns_1, negative_1, gap);
-    check(3, 1, gap, why.overflow);
-    copy(3, gap, gap_out);
-    return settled(&why, 3, gap_out);
+    beside(1, NU, 1, wrap_turns_1, negative_1, residual);
+    return finished(3, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H, &why);
     Hk_run(m, X, Hk, &why);
     beside(NV, NU, NC, H, Hk, slope);
-    check(NV*NV, 1, slope, why.overflow);
-    copy(NV*NV, slope, slope_out);
-    return settled(&why, NV*NV, slope_out);
+    return finished(NV*NV, slope, slope_out, &why);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = 3, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -4774,21 +4385,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -4802,56 +4413,48 @@ int fivebar_offset_forward_kinematics(const prepared *m, const real *q_actuated,
     real *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
-static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
+static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
 {
-    real constraints[1] = {0}, gap[NC] = {0};
-    verdict why;
+    real constraints[1] = {0}, residual[NC] = {0};
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < NC; ++i) {
-        gap[i] = -constraints[i];
+        residual[i] = -constraints[i];
     }
-    check(NC, 1, gap, why.overflow);
-    copy(NC, gap, gap_out);
-    return settled(&why, NC, gap_out);
+    return finished(NC, residual, residual_out, &why);
 }
 
 static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     Hk_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NC, slope_out);
+    return final_status(&why, NV*NC, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_constraint_gap(const prepared *m, const real *start, real *found)
+static int search_constraint_residual(const prepared *m, const real *start, real *found)
 {
     enum { N = NC, TRIALS = 1 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = constraint_gap_one(m, found, gap);
-    size = largest(gap, N);
+    code = constraint_residual_one(m, found, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > MET; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -4863,21 +4466,21 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = constraint_gap_one(m, trial, next);
+            tried = constraint_residual_one(m, trial, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > MET/10)) {
             break;
@@ -4890,13 +4493,11 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 int fivebar_offset_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
-    blame(search_constraint_gap(m, X, projected), &why);
-    check(NQ, 1, projected, why.overflow);
-    copy(NQ, projected, projected_out);
-    return settled(&why, NQ, projected_out);
+    check_one(NQ, X, why.invalid);
+    flag_status(search_constraint_residual(m, X, projected), &why);
+    return finished(NQ, projected, projected_out, &why);
 }
 
 int fivebar_offset_dissipation(const prepared *m, const real *X, const real *V, real
@@ -4905,211 +4506,155 @@ int fivebar_offset_dissipation(const prepared *m, const real *X, const real *V, 
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int fivebar_offset_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int fivebar_offset_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int fivebar_offset_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int fivebar_offset_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     const real *const q = q_of_inverse_kinematics;
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int fivebar_offset_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     const real *const qd = qd_of_joint_rates;
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int fivebar_offset_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     const real *const qdd = qdd_of_joint_accelerations;
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int fivebar_offset_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int fivebar_offset_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_2 = X + 2;
     rotation_of_angle(X_from_2, R);
-    check(4, 1, R, why.overflow);
-    copy(4, R, R_out);
-    return settled(&why, 4, R_out);
+    return finished(4, R, R_out, &why);
 }
 
 int fivebar_offset_pose(const real *t, const real *R, real *X_out)
 {
     real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 2) + total(R, 4);
-    if (!is_finite(total_in)) {
-        check(2, 1, t, why.invalid);
-        check(4, 1, R, why.invalid);
-    }
+    check_two(2, t, 4, R, why.invalid);
     angle_of_rotation(R, angle_of_rotation_1);
     beside(1, 2, 1, t, angle_of_rotation_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int fivebar_offset_X_dot(const real *X, const real *V, real *X_dot_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const X_dot = V;
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int fivebar_offset_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
+    check_two(NQ, X, NV, step, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int fivebar_offset_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] = {0}, step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
+    check_two(NQ, X0, NQ, X1, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -5117,39 +4662,23 @@ int fivebar_offset_difference(const real *X0, const real *X1, real *step_out)
         step[i] = subtract_1[i];
     }
     wrap_turns(1, 1, places_step, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int fivebar_offset_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    static const size_t places_wrap_turns_1[] = {2};
-    real subtract_1[NQ] = {0}, wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
-    verdict why;
+    real wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    for (size_t i = 0; i < NQ; ++i) {
-        subtract_1[i] = X1[i] - X0[i];
-    }
-    for (size_t i = 0; i < NQ; ++i) {
-        wrap_turns_1[i] = subtract_1[i];
-    }
-    wrap_turns(1, 1, places_wrap_turns_1, wrap_turns_1);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(fivebar_offset_difference(X0, X1, wrap_turns_1), &why);
     for (size_t i = 0; i < NQ; ++i) {
         scale_1[i] = wrap_turns_1[i]*s[i%(1)];
     }
     for (size_t i = 0; i < NQ; ++i) {
         X[i] = X0[i] + scale_1[i];
     }
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

@@ -156,7 +156,7 @@ int fivebar_offset_M(const fivebar_offset_model *model, const fivebar_offset_rea
 size_t fivebar_offset_M_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *M, int *status);
 
-/* Velocity and gravity terms Z. 144 mul, 89 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 142 mul, 89 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int fivebar_offset_Z(const fivebar_offset_model *model, const fivebar_offset_real *X, const
     fivebar_offset_real *V, fivebar_offset_real *Z);
@@ -184,7 +184,7 @@ int fivebar_offset_constraints(const fivebar_offset_model *model, const fivebar_
 size_t fivebar_offset_constraints_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *residual, int *status);
 
-/* The vector bias in Hk^T A + bias = 0. 30 mul, 16 add, 1 div, 1 sqrt, 0 trig. In: X (NQ), V
+/* The vector bias in Hk^T A + bias = 0. 31 mul, 16 add, 1 div, 1 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: bias (NC). */
 int fivebar_offset_constraint_bias(const fivebar_offset_model *model, const fivebar_offset_real
     *X, const fivebar_offset_real *V, fivebar_offset_real *bias);
@@ -198,7 +198,7 @@ int fivebar_offset_inverse_kinematics(const fivebar_offset_model *model, const f
 size_t fivebar_offset_inverse_kinematics_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *q, int *status);
 
-/* Rates of all joints. 77 mul, 42 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 78 mul, 42 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int fivebar_offset_joint_rates(const fivebar_offset_model *model, const fivebar_offset_real *X,
     const fivebar_offset_real *V, fivebar_offset_real *rates);
@@ -364,7 +364,7 @@ int fivebar_offset_actuator_positions(const fivebar_offset_model *model, const f
 size_t fivebar_offset_actuator_positions_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 77 mul, 42 add, 3 div, 2 sqrt, 0 trig. In: X
+/* Rates of the actuated joints, in the order of tau. 78 mul, 42 add, 3 div, 2 sqrt, 0 trig. In: X
    (NQ), V (NV). Out: rates (NU). */
 int fivebar_offset_actuator_rates(const fivebar_offset_model *model, const fivebar_offset_real *X,
     const fivebar_offset_real *V, fivebar_offset_real *rates);

@@ -1594,11 +1594,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1829,8 +1829,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1838,7 +1838,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1846,11 +1846,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1934,9 +1934,12 @@ def _run_dynamics(m, X, V):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
+    # (f_p) inertia force of the platform less its weight
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = -W_p_xx*h_star_y
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = W_p_xx*h_star_x - Z_p_t
-    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
+    Z_p_x = f_p_t - Z_p_t
+    Z_p_y = -Z_p_t_2 - f_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     (
@@ -1984,20 +1987,25 @@ def _run_dynamics(m, X, V):
         # (crank-w_1) reciprocal vector 1
         crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y
         crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y
+        # (crank-qd_1) rate of joint 1
+        crank_qd_1 = crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y
         # (crank-u_1) centripetal acceleration of the connection point
-        crank_u_1_x = -crank_S_dot_t_2*omega_z
-        crank_u_1_t = crank_S_dot_t*omega_z
+        crank_u_1_x = W_p_xx*crank_q_x
+        crank_u_1_y = W_p_xx*crank_q_y
         # (crank-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         crank_rel_o_in_axes1_x = (
-        axis_x_crank_axes1_x*crank_u_1_x + axis_y_crank_axes1_x*crank_u_1_t +
-            crank_S_dot_in_axes1_y*crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y
+        axis_x_crank_axes1_x*crank_u_1_x + crank_S_dot_in_axes1_y*crank_qd_1 -
+            axis_y_crank_axes1_x*crank_u_1_y
+        )
+        # (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        crank_mu_1_t_3 = (
+        crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*crank_s_1) -
+            crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t + crank_mu_1_t_2*crank_s_1)
         )
         # (crank-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         crank_mu_1_o_in_axes1_z = (
-        crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t + crank_mu_1_t_2*crank_s_1) +
-            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(axis_y_crank_axes1_x*crank_u_1_x -
-            axis_x_crank_axes1_x*crank_u_1_t) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 -
-            crank_mu_1_t*crank_s_1)
+        crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_u_1_y +
+            axis_y_crank_axes1_x*crank_u_1_x) - crank_mu_1_t_3
         )
         # (crank-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y
@@ -2119,13 +2127,15 @@ def _run_dynamics(m, X, V):
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -2134,12 +2144,13 @@ def _run_dynamics(m, X, V):
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
@@ -2147,13 +2158,12 @@ def _run_dynamics(m, X, V):
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_in_axes2_x = (
-        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_o_in_axes2_y = (
-        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
@@ -2164,12 +2174,12 @@ def _run_dynamics(m, X, V):
         rrr_d_Gamma_2_in_axes2_x = (
         rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = -rrr_mu_1_t_3 - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
@@ -2178,6 +2188,9 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
         rrr_d_phi_2_t - rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
@@ -2185,12 +2198,11 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_Q_t = (
@@ -2320,9 +2332,10 @@ def _run_M(m, X):
         crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
         crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x
-        # (crank-Q) inertia of the leg at the connection point, without the mass gathered there
+        # (crank-S_dot) velocity of the connection point
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        # (crank-Q) inertia of the leg at the connection point, without the mass gathered there
         crank_Q_t = axis_y_crank_axes1_x*crank_d_G_in_axes1_yy
         crank_Q_xx = axis_y_crank_axes1_x*crank_Q_t
         crank_Q_xy = axis_x_crank_axes1_x*crank_Q_t
@@ -2390,6 +2403,10 @@ def _run_M(m, X):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
@@ -2408,21 +2425,17 @@ def _run_M(m, X):
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx
-        axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx
-        rrr_Q_t_3 = (
+        rrr_Q_t = (
         rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) - rrr_d_c_in_axes2_yy -
             rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
             rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
         )
-        rrr_Q_t_4 = 0.5*rrr_Q_t_3
-        rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_6
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
         # (M_ta) coupling block of M
         rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
         rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
@@ -2465,7 +2478,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 144 mul, 89 add, 3 div, 2 sqrt, 0 trig
+# Z: 142 mul, 89 add, 3 div, 2 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2494,9 +2507,12 @@ def _run_Z(m, X, V):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
+    # (f_p) inertia force of the platform less its weight
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = -W_p_xx*h_star_y
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = W_p_xx*h_star_x - Z_p_t
-    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
+    Z_p_x = f_p_t - Z_p_t
+    Z_p_y = -Z_p_t_2 - f_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     Z_t_crank_x, Z_t_crank_y, Z_a_crank_z = [0.0] * 3
@@ -2525,14 +2541,21 @@ def _run_Z(m, X, V):
         crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
         crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x
-        # (crank-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
+        # (crank-S_dot) velocity of the connection point
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        # (crank-u_1) centripetal acceleration of the connection point
+        crank_u_1_x = W_p_xx*crank_q_x
+        crank_u_1_y = W_p_xx*crank_q_y
+        # (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        crank_mu_1_t_3 = (
+        crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*crank_s_1) -
+            crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t + crank_mu_1_t_2*crank_s_1)
+        )
+        # (crank-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         crank_mu_1_o_in_axes1_z = (
-        crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t + crank_mu_1_t_2*crank_s_1) +
-            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(-axis_x_crank_axes1_x*crank_q_y*omega_z*omega_z
-            - axis_y_crank_axes1_x*crank_q_x*omega_z*omega_z) -
-            crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*crank_s_1)
+        crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_u_1_y +
+            axis_y_crank_axes1_x*crank_u_1_x) - crank_mu_1_t_3
         )
         # (crank-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y
@@ -2600,22 +2623,24 @@ def _run_Z(m, X, V):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
+        )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
         )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -2624,12 +2649,13 @@ def _run_Z(m, X, V):
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
@@ -2637,36 +2663,37 @@ def _run_Z(m, X, V):
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_in_axes2_x = (
-        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_o_in_axes2_y = (
-        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = -rrr_mu_1_t_3 - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-U) velocity and gravity terms of the leg force
         rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
@@ -2735,13 +2762,12 @@ def _run_H(m, X):
         crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
         crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x
+        # (crank-S_dot) velocity of the connection point
+        axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
         # (crank-w_1) reciprocal vector 1
-        crank_w_1_x = (
-        crank_w_1_in_axes1_y*(crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1)
-        )
-        crank_w_1_y = (
-        crank_w_1_in_axes1_y*(crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1)
-        )
+        crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y
+        crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y
         # (crank-H_a_1) moment of the column's unit force about the platform origin
         crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x
         ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
@@ -2789,20 +2815,17 @@ def _run_H(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = (
-        rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
@@ -2857,13 +2880,12 @@ def _run_Hk(m, X):
         crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
         crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x
+        # (crank-S_dot) velocity of the connection point
+        axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
         # (crank-n_c) direction of the constraint force
-        crank_n_c_x = (
-        crank_n_c_in_axes1_x*(crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1)
-        )
-        crank_n_c_y = (
-        -crank_n_c_in_axes1_x*(crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1)
-        )
+        crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
+        crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x
         # (crank-Hk_a_1) moment of the column's unit force about the platform origin
         crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y
         ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
@@ -2875,7 +2897,7 @@ def _run_Hk(m, X):
     return ok, (out_Hk,)
 
 
-# constraint_bias: 30 mul, 16 add, 1 div, 1 sqrt, 0 trig
+# constraint_bias: 31 mul, 16 add, 1 div, 1 sqrt, 0 trig
 def _run_constraint_bias(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2898,6 +2920,8 @@ def _run_constraint_bias(m, X, V):
     omega_z = V_2
     ok = True
     out_constraint_bias = m.zeros("constraint_bias")
+    # (W_p) centripetal tensor of the platform
+    W_p_xx = -omega_z*omega_z
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
@@ -2932,11 +2956,15 @@ def _run_constraint_bias(m, X, V):
         crank_S_dot_in_axes1_y = (
         axis_x_crank_axes1_x*crank_S_dot_y + axis_y_crank_axes1_x*crank_S_dot_x
         )
+        # (crank-qd_1) rate of joint 1
+        crank_qd_1 = crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y
+        # (crank-u_1) centripetal acceleration of the connection point
+        crank_u_1_x = W_p_xx*crank_q_x
+        crank_u_1_y = W_p_xx*crank_q_y
         # (crank-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         crank_rel_o_in_axes1_x = (
-        crank_S_dot_in_axes1_y*crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y +
-            axis_y_crank_axes1_x*crank_S_dot_t*omega_z -
-            axis_x_crank_axes1_x*crank_S_dot_t_2*omega_z
+        axis_x_crank_axes1_x*crank_u_1_x + crank_S_dot_in_axes1_y*crank_qd_1 -
+            axis_y_crank_axes1_x*crank_u_1_y
         )
         # (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         crank_gamma_c1 = crank_n_c_in_axes1_x*crank_rel_o_in_axes1_x
@@ -2988,8 +3016,10 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     # (f_p) inertia force of the platform less its weight
-    f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y
-    f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = -W_p_xx*h_star_y
+    f_p_x = f_p_t + a_t_x*m_star - alpha_z*h_star_y
+    f_p_y = a_t_y*m_star + alpha_z*h_star_x - f_p_t_2
     # (mu_p) inertia moment of the platform less that of its weight
     mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_crank_x, R_t_crank_y, R_a_crank_z = [0.0] * 3
@@ -3018,9 +3048,12 @@ def _run_required(m, X, V, A):
         crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
         crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x
-        # (crank-n_c) direction of the constraint force
+        # (crank-S_dot) velocity of the connection point
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        crank_S_dot_t = crank_q_y*omega_z
+        crank_S_dot_t_2 = crank_q_x*omega_z
+        # (crank-n_c) direction of the constraint force
         crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
         crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x
         # (crank-w_1) reciprocal vector 1
@@ -3030,15 +3063,19 @@ def _run_required(m, X, V, A):
         crank_a_p_x = t_ddot_x - alpha_z*crank_q_y
         crank_a_p_y = t_ddot_y + alpha_z*crank_q_x
         # (crank-S_ddot) acceleration of the connection point
-        crank_S_ddot_x = crank_a_p_x - crank_q_x*omega_z*omega_z
-        crank_S_ddot_y = crank_a_p_y - crank_q_y*omega_z*omega_z
-        # (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        crank_mu_1_in_axes1_z = (
-        crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t + crank_mu_1_t_2*crank_s_1) +
-            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_S_ddot_y +
-            axis_y_crank_axes1_x*crank_S_ddot_x) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2
-            - crank_mu_1_t*crank_s_1)
+        crank_S_ddot_x = crank_a_p_x - crank_S_dot_t_2*omega_z
+        crank_S_ddot_y = crank_a_p_y - crank_S_dot_t*omega_z
+        # (crank-qdd_1) acceleration of joint 1
+        crank_qdd_1 = (
+        crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_S_ddot_y +
+            axis_y_crank_axes1_x*crank_S_ddot_x)
         )
+        # (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        crank_mu_1_t_3 = (
+        crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*crank_s_1) -
+            crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t + crank_mu_1_t_2*crank_s_1)
+        )
+        crank_mu_1_in_axes1_z = crank_J_1_in_spec1_zz*crank_qdd_1 - crank_mu_1_t_3
         # (crank-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         crank_G_in_axes1_y = crank_mu_1_in_axes1_z*crank_w_1_in_axes1_y
         # (crank-c) leg force on the platform without actuation and without the mass at the connection point
@@ -3130,67 +3167,70 @@ def _run_required(m, X, V, A):
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_in_axes2_y
         rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_in_axes2_x
@@ -3249,12 +3289,10 @@ def _run_inverse_kinematics(m, X):
             crank_platform_point_x, crank_platform_point_y, crank_root_1_t, crank_size_t,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_S_x = (
-        t_x + R_xx*crank_platform_point_x - crank_base_point_x - R_yx*crank_platform_point_y
-        )
-        crank_S_y = (
-        t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x - crank_base_point_y
-        )
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         crank_S_in_turn1_x = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_S_in_turn1_y = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         # (crank-rho2_1) squared amplitude
@@ -3262,12 +3300,13 @@ def _run_inverse_kinematics(m, X):
         crank_size_t*(crank_S_in_turn1_x*crank_S_in_turn1_x +
             crank_S_in_turn1_y*crank_S_in_turn1_y)
         )
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x
         # (crank-q_1) displacement of joint 1
-        crank_q_1_t = 1.0/(sqrt(crank_rho2_1))
-        crank_q_1 = (
-        atan2(crank_S_in_turn1_y*crank_platform_joint_offset_x*crank_q_1_t,
-            crank_S_in_turn1_x*crank_platform_joint_offset_x*crank_q_1_t)
-        )
+        crank_q_1 = atan2(crank_s_1, crank_c_1)
         ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
         # (crank-q_1) displacement of joint 1
         out_q[_q_crank[0][leg]] = crank_q_1
@@ -3279,8 +3318,10 @@ def _run_inverse_kinematics(m, X):
             rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
@@ -3294,19 +3335,23 @@ def _run_inverse_kinematics(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-q_1) displacement of joint 1
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
-        rrr_q_1 = (
-        atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
-            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
-        )
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-q_1) displacement of joint 1
+        rrr_q_1 = atan2(rrr_s_1, rrr_c_1)
         # (rrr-x_2) from the origin of joint 2 to the connection point
         rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-q_2) displacement of joint 2
-        rrr_q_2 = (
-        atan2(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x)
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-q_2) displacement of joint 2
+        rrr_q_2 = atan2(rrr_s_2, rrr_c_2)
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
@@ -3315,7 +3360,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 77 mul, 42 add, 3 div, 2 sqrt, 0 trig
+# joint_rates: 78 mul, 42 add, 3 div, 2 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -3363,14 +3408,17 @@ def _run_joint_rates(m, X, V):
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
         crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x
         # (crank-S_dot) velocity of the connection point
-        crank_S_dot_x = t_dot_x - crank_q_y*omega_z
-        crank_S_dot_y = t_dot_y + crank_q_x*omega_z
-        # (crank-qd_1) rate of joint 1
-        crank_qd_1 = (
-        crank_w_1_in_axes1_y*(crank_S_dot_x*(crank_base_frame_xy*crank_c_1 -
-            crank_base_frame_xx*crank_s_1) + crank_S_dot_y*(crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1))
+        axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        crank_S_dot_t = crank_q_y*omega_z
+        crank_S_dot_t_2 = crank_q_x*omega_z
+        crank_S_dot_x = t_dot_x - crank_S_dot_t
+        crank_S_dot_y = crank_S_dot_t_2 + t_dot_y
+        crank_S_dot_in_axes1_y = (
+        axis_x_crank_axes1_x*crank_S_dot_y + axis_y_crank_axes1_x*crank_S_dot_x
         )
+        # (crank-qd_1) rate of joint 1
+        crank_qd_1 = crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y
         ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
         # (crank-qd_1) rate of joint 1
         out_qd[_qd_crank[0][leg]] = crank_qd_1
@@ -3414,24 +3462,29 @@ def _run_joint_rates(m, X, V):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y
-        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
         rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
-        -(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y
+        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*(rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2))
+            rrr_qd_1*rrr_r_1_in_axes2_x)
         )
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
@@ -3498,17 +3551,21 @@ def _run_joint_accelerations(m, X, V, A):
         crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
         crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x
+        # (crank-S_dot) velocity of the connection point
+        axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        crank_S_dot_t = crank_q_y*omega_z
+        crank_S_dot_t_2 = crank_q_x*omega_z
         # (crank-a_p) acceleration of the connection point without its centripetal part
         crank_a_p_x = t_ddot_x - alpha_z*crank_q_y
         crank_a_p_y = t_ddot_y + alpha_z*crank_q_x
         # (crank-S_ddot) acceleration of the connection point
-        crank_S_ddot_x = crank_a_p_x - crank_q_x*omega_z*omega_z
-        crank_S_ddot_y = crank_a_p_y - crank_q_y*omega_z*omega_z
+        crank_S_ddot_x = crank_a_p_x - crank_S_dot_t_2*omega_z
+        crank_S_ddot_y = crank_a_p_y - crank_S_dot_t*omega_z
         # (crank-qdd_1) acceleration of joint 1
         crank_qdd_1 = (
-        crank_w_1_in_axes1_y*(crank_S_ddot_x*(crank_base_frame_xy*crank_c_1 -
-            crank_base_frame_xx*crank_s_1) + crank_S_ddot_y*(crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1))
+        crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_S_ddot_y +
+            axis_y_crank_axes1_x*crank_S_ddot_x)
         )
         ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
         # (crank-qdd_1) acceleration of joint 1
@@ -3563,41 +3620,45 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
+        )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
         )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
-        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_in_axes2_x = (
-        axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
-        )
-        rrr_rel_in_axes2_y = (
-        axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        )
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-qdd_1) acceleration of joint 1
         rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
@@ -3637,12 +3698,10 @@ def _run_constraints(m, X):
             crank_root_1_t, crank_size_t,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_S_x = (
-        t_x + R_xx*crank_platform_point_x - crank_base_point_x - R_yx*crank_platform_point_y
-        )
-        crank_S_y = (
-        t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x - crank_base_point_y
-        )
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         crank_S_in_turn1_x = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_S_in_turn1_y = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         # (crank-rho2_1) squared amplitude
@@ -3650,11 +3709,14 @@ def _run_constraints(m, X):
         crank_size_t*(crank_S_in_turn1_x*crank_S_in_turn1_x +
             crank_S_in_turn1_y*crank_S_in_turn1_y)
         )
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x
         # (crank-phi_c1) loop-closure residual along the constraint force
-        crank_phi_c1_t = 1.0/(sqrt(crank_rho2_1))
         crank_phi_c1 = (
-        crank_n_c_in_axes1_x*(crank_S_in_turn1_x*crank_S_in_turn1_x*crank_phi_c1_t*crank_platform_joint_offset_x
-            + crank_S_in_turn1_y*crank_S_in_turn1_y*crank_phi_c1_t*crank_platform_joint_offset_x -
+        crank_n_c_in_axes1_x*(crank_S_in_turn1_x*crank_c_1 + crank_S_in_turn1_y*crank_s_1 -
             crank_platform_joint_offset_x)
         )
         ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
@@ -3721,9 +3783,12 @@ def _run_legs(m, X, V, A):
         crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
         crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x
-        # (crank-n_c) direction of the constraint force
+        # (crank-S_dot) velocity of the connection point
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        crank_S_dot_t = crank_q_y*omega_z
+        crank_S_dot_t_2 = crank_q_x*omega_z
+        # (crank-n_c) direction of the constraint force
         crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
         crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x
         # (crank-w_1) reciprocal vector 1
@@ -3733,15 +3798,19 @@ def _run_legs(m, X, V, A):
         crank_a_p_x = t_ddot_x - alpha_z*crank_q_y
         crank_a_p_y = t_ddot_y + alpha_z*crank_q_x
         # (crank-S_ddot) acceleration of the connection point
-        crank_S_ddot_x = crank_a_p_x - crank_q_x*omega_z*omega_z
-        crank_S_ddot_y = crank_a_p_y - crank_q_y*omega_z*omega_z
-        # (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        crank_mu_1_in_axes1_z = (
-        crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t + crank_mu_1_t_2*crank_s_1) +
-            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_S_ddot_y +
-            axis_y_crank_axes1_x*crank_S_ddot_x) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2
-            - crank_mu_1_t*crank_s_1)
+        crank_S_ddot_x = crank_a_p_x - crank_S_dot_t_2*omega_z
+        crank_S_ddot_y = crank_a_p_y - crank_S_dot_t*omega_z
+        # (crank-qdd_1) acceleration of joint 1
+        crank_qdd_1 = (
+        crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_S_ddot_y +
+            axis_y_crank_axes1_x*crank_S_ddot_x)
         )
+        # (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        crank_mu_1_t_3 = (
+        crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*crank_s_1) -
+            crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t + crank_mu_1_t_2*crank_s_1)
+        )
+        crank_mu_1_in_axes1_z = crank_J_1_in_spec1_zz*crank_qdd_1 - crank_mu_1_t_3
         # (crank-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         crank_G_in_axes1_y = crank_mu_1_in_axes1_z*crank_w_1_in_axes1_y
         # (crank-c) leg force on the platform without actuation and without the mass at the connection point
@@ -3820,67 +3889,70 @@ def _run_legs(m, X, V, A):
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
         rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass
@@ -3921,11 +3993,11 @@ def _run_potential(m, X):
     R_yx = sin(X_2)
     ok = True
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (potential) potential energy
-    potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x - R_yx*h_star_in_platform_y) +
-        gravity_y*(R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x + m_star*t_y)
-    )
+    potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
     potential_crank, = [0.0] * 1
     for leg, k in legs[0]:
         (
@@ -3935,12 +4007,10 @@ def _run_potential(m, X):
             crank_potential_t, crank_potential_t_2, crank_root_1_t, crank_size_t,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_S_x = (
-        t_x + R_xx*crank_platform_point_x - crank_base_point_x - R_yx*crank_platform_point_y
-        )
-        crank_S_y = (
-        t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x - crank_base_point_y
-        )
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         crank_S_in_turn1_x = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_S_in_turn1_y = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         # (crank-rho2_1) squared amplitude
@@ -3975,8 +4045,10 @@ def _run_potential(m, X):
             rrr_platform_point_y, rrr_potential_t, rrr_potential_t_2, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
@@ -4003,14 +4075,16 @@ def _run_potential(m, X):
         rrr_s_2 = (
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
         # (potential) potential energy
         rrr_potential_t_3 = (
-        (rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x +
-            rrr_c_2*rrr_h_2_in_spec2_x + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
-            rrr_potential_t_2*rrr_s_1) - rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
-            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
-            rrr_potential_t*rrr_s_1))
+        rrr_g_in_axes1_x*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
+            rrr_h_2_in_spec2_y*rrr_s_2) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
+            rrr_c_2*rrr_h_2_in_spec2_y + rrr_h_2_in_spec2_x*rrr_s_2 +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 - rrr_potential_t*rrr_s_1))
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
@@ -4076,9 +4150,10 @@ def _run_condition(m, X):
         crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
         crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x
-        # (crank-n_c) direction of the constraint force
+        # (crank-S_dot) velocity of the connection point
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        # (crank-n_c) direction of the constraint force
         crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
         crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x
         # (crank-w_1) reciprocal vector 1
@@ -4148,20 +4223,17 @@ def _run_condition(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = (
-        rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_pivot_size = abs(rrr_rho2_1)
         rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
@@ -4451,15 +4523,15 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[0:2]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
     wrap_turns_1 = _wrapped(subtract_1, [0, 1])
     constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_1 = -constraints
-    gap = np.concatenate((wrap_turns_1, negative_1))
-    return (gap,)
+    residual = np.concatenate((wrap_turns_1, negative_1))
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -4470,14 +4542,14 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 
-def _steps_constraint_gap(m, X):
+def _steps_constraint_residual(m, X):
     constraints, = m.run(_run_constraints, ("constraints",), X)
-    gap = -constraints
-    return (gap,)
+    residual = -constraints
+    return (residual,)
 
 
 def _steps_constraint_slope(m, X):
@@ -4486,7 +4558,7 @@ def _steps_constraint_slope(m, X):
 
 
 def _steps_project(m, X):
-    projected = _search(m, _steps_constraint_gap, _steps_constraint_slope, X, (), (), False)
+    projected = _search(m, _steps_constraint_residual, _steps_constraint_slope, X, (), (), False)
     return (projected,)
 
 

@@ -147,9 +147,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -211,6 +211,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -259,7 +283,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -269,7 +293,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -282,7 +306,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -299,16 +323,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -316,7 +340,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1052,10 +1085,11 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real rpr_S_in_turn1_x, rpr_S_in_turn1_y, rpr_q_2_t, rpr_q_2, inv_rpr_q_2, axis_x_rpr_axes1_x,
-        axis_x_rpr_axes1_y, rpr_w_1_in_axes1_y, rpr_w_2_x, rpr_w_2_y, rpr_c_1, rpr_s_1,
-        rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_t, rpr_U_x, rpr_U_y, rpr_qdd_1, rpr_acc_2_in_axes1_x,
-        rpr_acc_2_in_axes1_y, rpr_c_in_axes1_y;
+    real rpr_q_2_t, rpr_q_2, inv_rpr_q_2, axis_x_rpr_axes1_x, axis_x_rpr_axes1_y, rpr_c_1, rpr_s_1,
+        rpr_g_in_axes1_x, rpr_g_in_axes1_y, rpr_S_ddot_in_axes1_x, rpr_S_ddot_in_axes1_y,
+        rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_t, rpr_bias_in_axes1_y, rpr_phi_2_t, rpr_c_t,
+        rpr_qdd_1, rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_U_x, rpr_U_y, rpr_acc_2_in_axes1_x,
+        rpr_acc_2_in_axes1_y, rpr_phi_2_in_axes1_x, rpr_c_in_axes1_y;
 } values_rpr;
 
 INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_rpr
@@ -1071,61 +1105,89 @@ INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] +
         rpr_S_y*m->rpr_base_frame_yy[i];
     /* (rpr-q_2) displacement of joint 2 */
-    const real rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x +
-        rpr_S_in_turn1_y*rpr_S_in_turn1_y;
-    const real rpr_q_2 = m->rpr_branch_1[i]*root(rpr_q_2_t);
-    /* (rpr-S_dot) velocity of the connection point */
-    const real inv_rpr_q_2 = 1/rpr_q_2;
-    const real axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x;
-    const real axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y;
-    /* (rpr-w_1) reciprocal vector 1 */
-    const real rpr_w_1_in_axes1_y = 1/rpr_q_2;
-    /* (rpr-w_2) reciprocal vector 2 */
-    const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
-    const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
+    v->rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y;
+    v->rpr_q_2 = m->rpr_branch_1[i]*root(v->rpr_q_2_t);
     /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x;
+    v->inv_rpr_q_2 = 1/v->rpr_q_2;
+    /* (rpr-S_dot) velocity of the connection point */
+    v->axis_x_rpr_axes1_x = v->inv_rpr_q_2*rpr_S_x;
+    v->axis_x_rpr_axes1_y = v->inv_rpr_q_2*rpr_S_y;
+    /* (rpr-c_1) */
+    v->rpr_c_1 = v->inv_rpr_q_2*rpr_S_in_turn1_x;
     /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y;
-    v->rpr_S_in_turn1_x = rpr_S_in_turn1_x;
-    v->rpr_S_in_turn1_y = rpr_S_in_turn1_y;
-    v->rpr_q_2_t = rpr_q_2_t;
-    v->rpr_q_2 = rpr_q_2;
-    v->inv_rpr_q_2 = inv_rpr_q_2;
-    v->axis_x_rpr_axes1_x = axis_x_rpr_axes1_x;
-    v->axis_x_rpr_axes1_y = axis_x_rpr_axes1_y;
-    v->rpr_w_1_in_axes1_y = rpr_w_1_in_axes1_y;
-    v->rpr_w_2_x = rpr_w_2_x;
-    v->rpr_w_2_y = rpr_w_2_y;
-    v->rpr_c_1 = rpr_c_1;
-    v->rpr_s_1 = rpr_s_1;
+    v->rpr_s_1 = v->inv_rpr_q_2*rpr_S_in_turn1_y;
+    /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->rpr_g_in_axes1_x = m->rpr_acc_2_t[i]*v->rpr_c_1 + m->rpr_acc_2_t_2[i]*v->rpr_s_1;
+    v->rpr_g_in_axes1_y = m->rpr_acc_2_t_2[i]*v->rpr_c_1 - m->rpr_acc_2_t[i]*v->rpr_s_1;
 }
 
-INLINE void stage_rpr_V_X(size_t w, size_t j, const real *V, values_rpr *v)
+INLINE void stage_rpr_A_X(size_t w, size_t j, const real *A, values_rpr *v)
+{
+    /* (rpr-S_ddot) acceleration of the connection point */
+    const real t_ddot_x = A[0*w + j];
+    const real t_ddot_y = A[1*w + j];
+    v->rpr_S_ddot_in_axes1_x = v->axis_x_rpr_axes1_x*t_ddot_x +
+        v->axis_x_rpr_axes1_y*t_ddot_y;
+    v->rpr_S_ddot_in_axes1_y = v->axis_x_rpr_axes1_x*t_ddot_y -
+        v->axis_x_rpr_axes1_y*t_ddot_x;
+}
+
+INLINE void stage_rpr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rpr *v)
 {
     /* (rpr-S_dot) velocity of the connection point */
     const real t_dot_x = V[0*w + j];
     const real t_dot_y = V[1*w + j];
-    const real rpr_S_dot_in_axes1_x = v->axis_x_rpr_axes1_x*t_dot_x +
-        v->axis_x_rpr_axes1_y*t_dot_y;
+    v->rpr_S_dot_in_axes1_x = v->axis_x_rpr_axes1_x*t_dot_x + v->axis_x_rpr_axes1_y*t_dot_y;
     /* (rpr-qd_1) rate of joint 1 */
-    const real rpr_qd_1 = v->inv_rpr_q_2*(v->axis_x_rpr_axes1_x*t_dot_y -
+    v->rpr_qd_1 = v->inv_rpr_q_2*(v->axis_x_rpr_axes1_x*t_dot_y -
         v->axis_x_rpr_axes1_y*t_dot_x);
     /* (rpr-W_1) centripetal tensor of link 1 */
-    const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
-    v->rpr_S_dot_in_axes1_x = rpr_S_dot_in_axes1_x;
-    v->rpr_qd_1 = rpr_qd_1;
-    v->rpr_W_1_t = rpr_W_1_t;
+    v->rpr_W_1_t = v->rpr_qd_1*v->rpr_qd_1;
+    /* (rpr-bias) acceleration of the connection point at zero joint accelerations */
+    v->rpr_bias_in_axes1_y = 2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
+    /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
+    v->rpr_phi_2_t = v->rpr_W_1_t*m->rpr_h_2_in_spec1_x[i];
+    /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->rpr_c_t = v->rpr_W_1_t*m->rpr_h_2_in_spec1_y[i];
+}
+
+INLINE void stage_rpr_A_V_X(values_rpr *v)
+{
+    /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rpr_rel_in_axes1_y = v->rpr_S_ddot_in_axes1_y - v->rpr_bias_in_axes1_y;
+    /* (rpr-qdd_1) acceleration of joint 1 */
+    v->rpr_qdd_1 = v->inv_rpr_q_2*rpr_rel_in_axes1_y;
+}
+
+INLINE void stage_rpr_M_dynamics(const prepared *m, size_t i, values_rpr *v)
+{
+    /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rpr_d_c_in_axes1_xy = v->inv_rpr_q_2*m->rpr_h_2_in_spec1_y[i];
+    const real rpr_d_c_in_axes1_yy = -v->inv_rpr_q_2*m->rpr_h_2_in_spec1_x[i] -
+        v->inv_rpr_q_2*(m->rpr_h_2_in_spec1_x[i] +
+        v->inv_rpr_q_2*m->rpr_J_group_1_in_axes1_zz[i]);
+    /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
+    const real rpr_Q_t_2 = v->axis_x_rpr_axes1_y*rpr_Q_t -
+        v->axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
+    const real rpr_Q_t_3 = v->axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy +
+        v->axis_x_rpr_axes1_x*rpr_Q_t;
+    v->rpr_Q_xx = -2*v->axis_x_rpr_axes1_y*rpr_Q_t_2;
+    v->rpr_Q_xy = v->axis_x_rpr_axes1_x*rpr_Q_t_2 + v->axis_x_rpr_axes1_y*rpr_Q_t_3;
+    v->rpr_Q_yy = -2*v->axis_x_rpr_axes1_x*rpr_Q_t_3;
 }
 
 INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
 {
     /* (rpr-B_1_o) remainder of the acceleration tensor of link 1 */
-    const real rpr_B_1_o_in_axes1_xy = 2*v->inv_rpr_q_2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
+    const real rpr_B_1_o_in_axes1_xy = v->inv_rpr_q_2*v->rpr_bias_in_axes1_y;
     /* (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
        */
     const real rpr_phi_2_o_in_axes1_x = rpr_B_1_o_in_axes1_xy*m->rpr_h_2_in_spec1_y[i] -
-        v->rpr_W_1_t*m->rpr_h_2_in_spec1_x[i];
+        v->rpr_phi_2_t;
     /* (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rpr_mu_1_o_in_axes1_z =
@@ -1137,52 +1199,32 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
         rpr_B_1_o_in_axes1_xy*m->rpr_Sigma_1_in_axes1_yy[i];
     /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real rpr_c_o_in_axes1_y = v->rpr_W_1_t*m->rpr_h_2_in_spec1_y[i] +
+    const real rpr_c_o_in_axes1_y = v->rpr_c_t +
         rpr_B_1_o_in_axes1_xy*m->rpr_h_2_in_spec1_x[i] - v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
     /* (rpr-U) velocity and gravity terms of the leg force */
-    const real rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
+    v->rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
         v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
-    const real rpr_U_y = v->axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
+    v->rpr_U_y = v->axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
         v->axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
-    v->rpr_U_x = rpr_U_x;
-    v->rpr_U_y = rpr_U_y;
 }
 
-INLINE void stage_rpr_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
-    *A, values_rpr *v)
+INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
 {
-    /* (rpr-S_ddot) acceleration of the connection point */
-    const real t_ddot_x = A[0*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real rpr_S_ddot_in_axes1_y = v->axis_x_rpr_axes1_x*t_ddot_y -
-        v->axis_x_rpr_axes1_y*t_ddot_x;
-    /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y -
-        2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
-    /* (rpr-qdd_1) acceleration of joint 1 */
-    const real rpr_qdd_1 = v->inv_rpr_q_2*rpr_rel_in_axes1_y;
     /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rpr_g_in_axes1_x = m->rpr_acc_2_t[i]*v->rpr_c_1 +
-        m->rpr_acc_2_t_2[i]*v->rpr_s_1;
-    const real rpr_g_in_axes1_y = m->rpr_acc_2_t_2[i]*v->rpr_c_1 -
-        m->rpr_acc_2_t[i]*v->rpr_s_1;
-    const real rpr_acc_2_in_axes1_x = v->axis_x_rpr_axes1_x*t_ddot_x +
-        v->axis_x_rpr_axes1_y*t_ddot_y - rpr_g_in_axes1_x;
-    const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
+    v->rpr_acc_2_in_axes1_x = v->rpr_S_ddot_in_axes1_x - v->rpr_g_in_axes1_x;
+    v->rpr_acc_2_in_axes1_y = v->rpr_S_ddot_in_axes1_y - v->rpr_g_in_axes1_y;
+    /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
+    v->rpr_phi_2_in_axes1_x = -v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*v->rpr_qdd_1;
     /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rpr_mu_1_in_axes1_z = rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
-        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
-        rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
-        rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
-        m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1;
+    const real rpr_mu_1_in_axes1_z = v->rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
+        v->rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
+        v->rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
+        v->rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
+        m->rpr_J_group_1_in_axes1_zz[i]*v->rpr_qdd_1;
     /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rpr_c_in_axes1_y = v->rpr_W_1_t*m->rpr_h_2_in_spec1_y[i] -
-        m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1 - v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
-    v->rpr_qdd_1 = rpr_qdd_1;
-    v->rpr_acc_2_in_axes1_x = rpr_acc_2_in_axes1_x;
-    v->rpr_acc_2_in_axes1_y = rpr_acc_2_in_axes1_y;
-    v->rpr_c_in_axes1_y = rpr_c_in_axes1_y;
+    v->rpr_c_in_axes1_y = v->rpr_c_t - m->rpr_h_2_in_spec1_x[i]*v->rpr_qdd_1 -
+        v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
@@ -1193,27 +1235,13 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, X, &v);
-    stage_rpr_V_X(w, j, V, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_M_dynamics(m, i, &v);
     stage_rpr_Z_dynamics(m, i, &v);
-    /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rpr_d_c_in_axes1_xy = v.inv_rpr_q_2*m->rpr_h_2_in_spec1_y[i];
-    const real rpr_d_c_in_axes1_yy = -v.inv_rpr_q_2*m->rpr_h_2_in_spec1_x[i] -
-        v.inv_rpr_q_2*(m->rpr_h_2_in_spec1_x[i] +
-        v.inv_rpr_q_2*m->rpr_J_group_1_in_axes1_zz[i]);
-    /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
-    const real rpr_Q_t_2 = v.axis_x_rpr_axes1_y*rpr_Q_t -
-        v.axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
-    const real rpr_Q_t_3 = v.axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy +
-        v.axis_x_rpr_axes1_x*rpr_Q_t;
-    const real rpr_Q_xx = -2*v.axis_x_rpr_axes1_y*rpr_Q_t_2;
-    const real rpr_Q_xy = v.axis_x_rpr_axes1_x*rpr_Q_t_2 + v.axis_x_rpr_axes1_y*rpr_Q_t_3;
-    const real rpr_Q_yy = -2*v.axis_x_rpr_axes1_x*rpr_Q_t_3;
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rpr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rpr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rpr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rpr_Q_yy);  /* M_tt_yy_of_legs */
     /* (Z_t) translational part of Z */
     gather(&terms[3*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
     gather(&terms[4*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
@@ -1226,7 +1254,7 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void dynamics_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1235,7 +1263,7 @@ INLINE void dynamics_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
-    *Z, verdict *t)
+    *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -1260,7 +1288,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     real sums[5] = {0};
     real terms_rpr[5*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
@@ -1277,7 +1305,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
     real sums[5*LANES];
     real o_rpr[4*LANES];
@@ -1301,33 +1329,22 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, X, &v);
-    /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rpr_d_c_in_axes1_xy = m->rpr_h_2_in_spec1_y[i]*v.rpr_w_1_in_axes1_y;
-    const real rpr_d_c_in_axes1_yy = -m->rpr_h_2_in_spec1_x[i]*v.rpr_w_1_in_axes1_y -
-        v.rpr_w_1_in_axes1_y*(m->rpr_h_2_in_spec1_x[i] +
-        m->rpr_J_group_1_in_axes1_zz[i]*v.rpr_w_1_in_axes1_y);
-    /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
-    const real rpr_Q_t_2 = rpr_Q_t*v.rpr_w_2_y - rpr_d_c_in_axes1_xy*v.rpr_w_2_x;
-    const real rpr_Q_t_3 = rpr_d_c_in_axes1_xy*v.rpr_w_2_y + rpr_Q_t*v.rpr_w_2_x;
-    const real rpr_Q_xx = -2*rpr_Q_t_2*v.rpr_w_2_y;
-    const real rpr_Q_xy = rpr_Q_t_2*v.rpr_w_2_x + rpr_Q_t_3*v.rpr_w_2_y;
-    const real rpr_Q_yy = -2*rpr_Q_t_3*v.rpr_w_2_x;
+    stage_rpr_M_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rpr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rpr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rpr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rpr_Q_yy);  /* M_tt_yy_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
-INLINE void M_place_rpr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, verdict *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
+    *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -1343,7 +1360,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real sums[3] = {0};
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
@@ -1359,7 +1376,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     M_after(m, 1, 0, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
     real sums[3*LANES];
     real o_rpr[LANES];
@@ -1383,7 +1401,7 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, X, &v);
-    stage_rpr_V_X(w, j, V, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
     stage_rpr_Z_dynamics(m, i, &v);
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
@@ -1392,12 +1410,13 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2);
 }
 
-INLINE void Z_place_rpr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
+    *t)
 {
     /* (Z_t) */
     const real Z_t_x_of_legs = sums[0*w + k];
@@ -1410,7 +1429,7 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += Z_t_x + Z_t_y;
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
     real sums[2] = {0};
     real terms_rpr[2*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
@@ -1426,8 +1445,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(m, 1, 0, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
     real sums[2*LANES];
     real o_rpr[LANES];
@@ -1452,15 +1471,15 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rpr v;
     stage_rpr_X(m, w, i, j, X, &v);
     /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.rpr_w_2_x;
-    o[1*count + k] = v.rpr_w_2_y;
-    o[3*count + k] = v.rpr_w_2_x + v.rpr_w_2_y;
+    o[0*count + k] = v.axis_x_rpr_axes1_x;
+    o[1*count + k] = v.axis_x_rpr_axes1_y;
+    o[3*count + k] = v.axis_x_rpr_axes1_x + v.axis_x_rpr_axes1_y;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void H_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1468,7 +1487,7 @@ INLINE void H_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[3*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
@@ -1479,7 +1498,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
     real o_rpr[4*LANES];
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -1512,17 +1532,16 @@ INLINE void required_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, X, &v);
-    stage_rpr_V_X(w, j, V, &v);
-    stage_rpr_legs_required(m, w, i, j, A, &v);
-    /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
-    const real rpr_phi_2_in_axes1_x = -v.rpr_W_1_t*m->rpr_h_2_in_spec1_x[i] -
-        m->rpr_h_2_in_spec1_y[i]*v.rpr_qdd_1;
+    stage_rpr_A_X(w, j, A, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_A_V_X(&v);
+    stage_rpr_legs_required(m, i, &v);
     /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rpr_c_x = -v.axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x -
+    const real rpr_c_x = -v.axis_x_rpr_axes1_x*v.rpr_phi_2_in_axes1_x -
         v.axis_x_rpr_axes1_y*v.rpr_c_in_axes1_y;
     const real rpr_c_y = v.axis_x_rpr_axes1_x*v.rpr_c_in_axes1_y -
-        v.axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x;
+        v.axis_x_rpr_axes1_y*v.rpr_phi_2_in_axes1_x;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rpr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rpr_c_y);  /* R_t_y_of_legs */
@@ -1534,7 +1553,7 @@ INLINE void required_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void required_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1556,7 +1575,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
     real s[2] = {0}, sums[2] = {0};
     real terms_rpr[2*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[3*LEGS(LEGS_OF_rpr)] = {0};
@@ -1574,7 +1593,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, verdict *restrict t)
+    real *restrict required, real *restrict H, status_flags *restrict t)
 {
     real s[2*LANES], sums[2*LANES];
     real o_rpr[3*LANES];
@@ -1602,8 +1621,7 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
     values_rpr v;
     stage_rpr_X(m, w, i, j, X, &v);
     /* (rpr-q_1) displacement of joint 1 */
-    const real rpr_q_1 = angle(v.inv_rpr_q_2*v.rpr_S_in_turn1_y,
-        v.inv_rpr_q_2*v.rpr_S_in_turn1_x);
+    const real rpr_q_1 = angle(v.rpr_s_1, v.rpr_c_1);
     /* (rpr-q_1) */
     o[0*count + k] = rpr_q_1;
     /* (rpr-q_2) displacement of joint 2 */
@@ -1614,7 +1632,7 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
 }
 
 INLINE void inverse_kinematics_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[2*i*w + k] = o[0*count + at];
     q[(1 + 2*i)*w + k] = o[1*count + at];
@@ -1622,7 +1640,7 @@ INLINE void inverse_kinematics_place_rpr(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[3*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
@@ -1634,7 +1652,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
     real o_rpr[4*LANES];
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -1653,7 +1671,7 @@ INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, X, &v);
-    stage_rpr_V_X(w, j, V, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
     /* (rpr-qd_1) rate of joint 1 */
     o[0*count + k] = v.rpr_qd_1;
     /* (rpr-qd_2) rate of joint 2 */
@@ -1664,7 +1682,7 @@ INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j
 }
 
 INLINE void joint_rates_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[2*i*w + k] = o[0*count + at];
     qd[(1 + 2*i)*w + k] = o[1*count + at];
@@ -1672,7 +1690,8 @@ INLINE void joint_rates_place_rpr(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[3*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
@@ -1684,7 +1703,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
     real o_rpr[4*LANES];
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -1703,27 +1722,22 @@ INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, 
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, X, &v);
-    stage_rpr_V_X(w, j, V, &v);
+    stage_rpr_A_X(w, j, A, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_A_V_X(&v);
     /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-    const real t_ddot_x = A[0*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real rpr_rel_in_axes1_x = v.axis_x_rpr_axes1_x*t_ddot_x +
-        v.axis_x_rpr_axes1_y*t_ddot_y + v.rpr_q_2*v.rpr_qd_1*v.rpr_qd_1;
-    const real rpr_rel_in_axes1_y = v.axis_x_rpr_axes1_x*t_ddot_y -
-        v.axis_x_rpr_axes1_y*t_ddot_x - 2*v.rpr_S_dot_in_axes1_x*v.rpr_qd_1;
+    const real rpr_rel_in_axes1_x = v.rpr_S_ddot_in_axes1_x + v.rpr_W_1_t*v.rpr_q_2;
     /* (rpr-qdd_1) acceleration of joint 1 */
-    const real rpr_qdd_1 = v.inv_rpr_q_2*rpr_rel_in_axes1_y;
-    /* (rpr-qdd_1) */
-    o[0*count + k] = rpr_qdd_1;
+    o[0*count + k] = v.rpr_qdd_1;
     /* (rpr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = rpr_rel_in_axes1_x;
-    o[3*count + k] = rpr_qdd_1 + rpr_rel_in_axes1_x;
+    o[3*count + k] = v.rpr_qdd_1 + rpr_rel_in_axes1_x;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void joint_accelerations_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[2*i*w + k] = o[0*count + at];
     qdd[(1 + 2*i)*w + k] = o[1*count + at];
@@ -1732,7 +1746,7 @@ INLINE void joint_accelerations_place_rpr(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
@@ -1744,7 +1758,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
     real o_rpr[4*LANES];
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -1763,11 +1777,13 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, X, &v);
-    stage_rpr_V_X(w, j, V, &v);
-    stage_rpr_legs_required(m, w, i, j, A, &v);
+    stage_rpr_A_X(w, j, A, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_A_V_X(&v);
+    stage_rpr_legs_required(m, i, &v);
     /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
-    const real rpr_c_true_in_axes1_x = v.rpr_W_1_t*m->rpr_h_2_in_spec1_x[i] -
-        v.rpr_acc_2_in_axes1_x*m->rpr_link2_mass[i] + m->rpr_h_2_in_spec1_y[i]*v.rpr_qdd_1;
+    const real rpr_c_true_in_axes1_x = -v.rpr_acc_2_in_axes1_x*m->rpr_link2_mass[i] -
+        v.rpr_phi_2_in_axes1_x;
     const real rpr_c_true_in_axes1_y = v.rpr_c_in_axes1_y -
         v.rpr_acc_2_in_axes1_y*m->rpr_link2_mass[i];
     const real rpr_c_true_x = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
@@ -1785,7 +1801,7 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[3*i*w + k] = o[0*count + at];
     leg_force[(3*i + 1)*w + k] = o[1*count + at];
@@ -1795,7 +1811,7 @@ INLINE void legs_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
     clear(leg_force, 3*NL);
@@ -1825,12 +1841,10 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
     values_rpr v;
     stage_rpr_X(m, w, i, j, X, &v);
     /* (potential) */
-    const real rpr_potential_t_3 = (m->rpr_acc_2_t[i]*v.rpr_c_1 +
-        m->rpr_acc_2_t_2[i]*v.rpr_s_1)*(m->rpr_h_1_in_spec1_x[i] + m->rpr_h_2_in_spec1_x[i] +
-        m->rpr_link1_mass[i]*(v.rpr_c_1*m->rpr_potential_t[i] +
-        m->rpr_potential_t_2[i]*v.rpr_s_1)) + (m->rpr_acc_2_t_2[i]*v.rpr_c_1 -
-        m->rpr_acc_2_t[i]*v.rpr_s_1)*(m->rpr_h_1_in_spec1_y[i] + m->rpr_h_2_in_spec1_y[i] +
-        m->rpr_link1_mass[i]*(v.rpr_c_1*m->rpr_potential_t_2[i] -
+    const real rpr_potential_t_3 = v.rpr_g_in_axes1_x*(m->rpr_h_1_in_spec1_x[i] +
+        m->rpr_h_2_in_spec1_x[i] + m->rpr_link1_mass[i]*(v.rpr_c_1*m->rpr_potential_t[i] +
+        m->rpr_potential_t_2[i]*v.rpr_s_1)) + v.rpr_g_in_axes1_y*(m->rpr_h_1_in_spec1_y[i] +
+        m->rpr_h_2_in_spec1_y[i] + m->rpr_link1_mass[i]*(v.rpr_c_1*m->rpr_potential_t_2[i] -
         m->rpr_potential_t[i]*v.rpr_s_1));
     /* (potential) */
     gather(&terms[0*count + k], add, rpr_potential_t_3);  /* potential_of_legs */
@@ -1838,7 +1852,7 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
         LEAST_2);
 }
 
-INLINE void potential_place_rpr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -1853,7 +1867,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
     real s[1] = {0}, sums[1] = {0};
     real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
@@ -1871,7 +1885,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, status_flags
+    *t)
 {
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
@@ -1896,17 +1911,17 @@ INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
     /* (spread) */
     gather(&terms[0*count + k], add, rpr_spread_t_3);  /* spread_rpr */
     /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.rpr_w_2_x;
-    o[1*count + k] = v.rpr_w_2_y;
+    o[0*count + k] = v.axis_x_rpr_axes1_x;
+    o[1*count + k] = v.axis_x_rpr_axes1_y;
     /* (rpr-G) */
     o[2*count + k] = rpr_least_pivots;
-    o[4*count + k] = v.rpr_w_2_x + (v.rpr_w_2_y + rpr_least_pivots);
+    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + rpr_least_pivots);
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void condition_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *pivots, verdict *t)
+    *o, real *H, real *pivots, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1916,7 +1931,7 @@ INLINE void condition_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t 
 }
 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
-    *lengths, verdict *t)
+    *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_rpr = sums[0*w + k];
@@ -1927,7 +1942,7 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
     real sums[1] = {0};
     real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
@@ -1949,196 +1964,179 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int fivebar_prismatic_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int fivebar_prismatic_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int fivebar_prismatic_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int fivebar_prismatic_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int fivebar_prismatic_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int fivebar_prismatic_joint_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int fivebar_prismatic_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_2(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -2177,14 +2175,9 @@ int fivebar_prismatic_inverse_dynamics(const prepared *m, const real *X, const r
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -2199,7 +2192,7 @@ int fivebar_prismatic_inverse_dynamics(const prepared *m, const real *X, const r
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    return settled(&why, NU, tau_out);
+    return final_status(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -2207,7 +2200,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2218,8 +2211,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_2(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
 }
 
 static const size_t order_A[] = {0, 1};
@@ -2231,14 +2224,9 @@ int fivebar_prismatic_forward_dynamics(const prepared *m, const real *X, const r
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
         subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -2257,7 +2245,7 @@ int fivebar_prismatic_forward_dynamics(const prepared *m, const real *X, const r
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2266,7 +2254,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
         A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2281,8 +2269,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_2(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int fivebar_prismatic_complete_acceleration(const prepared *m, const real *X, const real *V, const
@@ -2292,13 +2280,11 @@ int fivebar_prismatic_complete_acceleration(const prepared *m, const real *X, co
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int fivebar_prismatic_leg_reactions(const prepared *m, const real *X, const real *V, const real
@@ -2306,49 +2292,27 @@ int fivebar_prismatic_leg_reactions(const prepared *m, const real *X, const real
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
-        unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[6] = {0}, forces[3*NL] = {0},
-        work[NV*PADDED(NV)];
-    verdict why;
+    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[6] = {0}, forces[3*NL] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, &why);
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - wrench[i];
-    }
-    eliminate_2(1, NV, order_tau, sizes_tau, H, subtract_1, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NV, 1, H, work);
-        solve_apart(NV, subtract_1, work, solve_1, why.singular);
-        check(NV, 1, solve_1, why.overflow);
-    }
+    flag_status(fivebar_prismatic_inverse_dynamics(m, X, V, A, wrench, solve_1), &why);
     legs_run(m, X, V, A, leg_force, actuator, &why);
     for (size_t i = 0; i < 3*NL; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
-    check(3*NL, 1, forces, why.overflow);
-    copy(3*NL, forces, forces_out);
-    return settled(&why, 3*NL, forces_out);
+    return finished(3*NL, forces, forces_out, &why);
 }
 
 int fivebar_prismatic_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
     real *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -2357,16 +2321,16 @@ int fivebar_prismatic_energy(const prepared *m, const real *X, const real *V, re
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int fivebar_prismatic_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, reach[NL] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, legs_out, reach, &why);
     singular_values(NV, NU, H, sigma);
     if (!is_finite(why.total[0])) {
@@ -2376,8 +2340,8 @@ int fivebar_prismatic_condition(const prepared *m, const real *X, real *sigma_ou
     check(2, 1, lengths, why.overflow);
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int fivebar_prismatic_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -2385,9 +2349,9 @@ int fivebar_prismatic_manipulability(const prepared *m, const real *X, real *mea
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
         {0}, measure[1] = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
     singular_values(NV, NU, H, singular_values_1);
     spread(NV, singular_values_1, measure, isotropy);
@@ -2398,8 +2362,8 @@ int fivebar_prismatic_manipulability(const prepared *m, const real *X, real *mea
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int fivebar_prismatic_singularity_distance(const prepared *m, const real *X, real *actuators_out,
@@ -2407,9 +2371,9 @@ int fivebar_prismatic_singularity_distance(const prepared *m, const real *X, rea
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
         {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
     singular_values(NV, NU, H, singular_values_1);
     spread(NV, singular_values_1, spread_1, actuators);
@@ -2420,52 +2384,47 @@ int fivebar_prismatic_singularity_distance(const prepared *m, const real *X, rea
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_1[2] = {0}, gap[NU] = {0};
-    verdict why;
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_1[2] = {0}, residual[NU] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(2, 1, fivebar_prismatic_ACTUATED, q, q_of_inverse_kinematics_from_1);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_1[i];
+        residual[i] = q_actuated[i] - q_of_inverse_kinematics_from_1[i];
     }
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -2477,21 +2436,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -2505,17 +2464,11 @@ int fivebar_prismatic_forward_kinematics(const prepared *m, const real *q_actuat
     *X0, real *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int fivebar_prismatic_dissipation(const prepared *m, const real *X, const real *V, real
@@ -2524,185 +2477,136 @@ int fivebar_prismatic_dissipation(const prepared *m, const real *X, const real *
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int fivebar_prismatic_momentum(const prepared *m, const real *X, const real *V, real
     *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int fivebar_prismatic_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int fivebar_prismatic_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int fivebar_prismatic_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, fivebar_prismatic_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int fivebar_prismatic_actuator_rates(const prepared *m, const real *X, const real *V, real
     *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, fivebar_prismatic_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int fivebar_prismatic_actuator_accelerations(const prepared *m, const real *X, const real *V,
     const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, fivebar_prismatic_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int fivebar_prismatic_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int fivebar_prismatic_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
+    check_two(NQ, X, NV, step, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int fivebar_prismatic_difference(const real *X0, const real *X1, real *step_out)
 {
     real step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
+    check_two(NQ, X0, NQ, X1, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         step[i] = X1[i] - X0[i];
     }
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int fivebar_prismatic_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real subtract_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -2712,9 +2616,7 @@ int fivebar_prismatic_interpolate(const real *X0, const real *X1, const real *s,
     for (size_t i = 0; i < NQ; ++i) {
         X[i] = X0[i] + scale_1[i];
     }
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

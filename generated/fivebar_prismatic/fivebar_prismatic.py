@@ -1289,11 +1289,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1486,8 +1486,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1495,7 +1495,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1503,11 +1503,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1565,8 +1565,9 @@ def _run_dynamics(m, X, V):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-S_dot) velocity of the connection point
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y
@@ -1574,12 +1575,14 @@ def _run_dynamics(m, X, V):
         rpr_qd_1 = inv_rpr_q_2*(axis_x_rpr_axes1_x*t_dot_y - axis_x_rpr_axes1_y*t_dot_x)
         # (rpr-W_1) centripetal tensor of link 1
         rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-bias) acceleration of the connection point at zero joint accelerations
+        rpr_bias_in_axes1_y = 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-B_1_o) remainder of the acceleration tensor of link 1
-        rpr_B_1_o_in_axes1_xy = 2.0*inv_rpr_q_2*rpr_S_dot_in_axes1_x*rpr_qd_1
+        rpr_B_1_o_in_axes1_xy = inv_rpr_q_2*rpr_bias_in_axes1_y
+        # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_t = rpr_W_1_t*rpr_h_2_in_spec1_x
         # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_o_in_axes1_x = (
-        rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_y - rpr_W_1_t*rpr_h_2_in_spec1_x
-        )
+        rpr_phi_2_o_in_axes1_x = rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_y - rpr_phi_2_t
         # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
         rpr_h_group_1_in_axes1_y*(axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y) -
@@ -1587,6 +1590,8 @@ def _run_dynamics(m, X, V):
             rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_yy -
             rpr_h_group_1_in_axes1_x*(axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x)
         )
+        # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_t = rpr_W_1_t*rpr_h_2_in_spec1_y
         # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rpr_d_c_in_axes1_xy = inv_rpr_q_2*rpr_h_2_in_spec1_y
         rpr_d_c_in_axes1_yy = (
@@ -1595,8 +1600,7 @@ def _run_dynamics(m, X, V):
         )
         # (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rpr_c_o_in_axes1_y = (
-        rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_x + rpr_W_1_t*rpr_h_2_in_spec1_y -
-            inv_rpr_q_2*rpr_mu_1_o_in_axes1_z
+        rpr_c_t + rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_x - inv_rpr_q_2*rpr_mu_1_o_in_axes1_z
         )
         # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
         rpr_Q_t = 0.5*rpr_d_c_in_axes1_yy
@@ -1670,24 +1674,24 @@ def _run_M(m, X):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-w_1) reciprocal vector 1
-        rpr_w_1_in_axes1_y = 1.0/rpr_q_2
-        # (rpr-w_2) reciprocal vector 2
-        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
-        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
+        axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_d_c_in_axes1_xy = rpr_h_2_in_spec1_y*rpr_w_1_in_axes1_y
+        rpr_d_c_in_axes1_xy = inv_rpr_q_2*rpr_h_2_in_spec1_y
         rpr_d_c_in_axes1_yy = (
-        -rpr_h_2_in_spec1_x*rpr_w_1_in_axes1_y - rpr_w_1_in_axes1_y*(rpr_h_2_in_spec1_x +
-            rpr_J_group_1_in_axes1_zz*rpr_w_1_in_axes1_y)
+        -inv_rpr_q_2*rpr_h_2_in_spec1_x - inv_rpr_q_2*(rpr_h_2_in_spec1_x +
+            inv_rpr_q_2*rpr_J_group_1_in_axes1_zz)
         )
         # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
         rpr_Q_t = 0.5*rpr_d_c_in_axes1_yy
-        rpr_Q_t_2 = rpr_Q_t*rpr_w_2_y - rpr_d_c_in_axes1_xy*rpr_w_2_x
-        rpr_Q_t_3 = rpr_Q_t*rpr_w_2_x + rpr_d_c_in_axes1_xy*rpr_w_2_y
-        rpr_Q_xx = -2.0*rpr_Q_t_2*rpr_w_2_y
-        rpr_Q_xy = rpr_Q_t_2*rpr_w_2_x + rpr_Q_t_3*rpr_w_2_y
-        rpr_Q_yy = -2.0*rpr_Q_t_3*rpr_w_2_x
+        rpr_Q_t_2 = axis_x_rpr_axes1_y*rpr_Q_t - axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy
+        rpr_Q_t_3 = axis_x_rpr_axes1_x*rpr_Q_t + axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy
+        rpr_Q_xx = -2.0*axis_x_rpr_axes1_y*rpr_Q_t_2
+        rpr_Q_xy = axis_x_rpr_axes1_x*rpr_Q_t_2 + axis_x_rpr_axes1_y*rpr_Q_t_3
+        rpr_Q_yy = -2.0*axis_x_rpr_axes1_x*rpr_Q_t_3
         ok = (
         ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_q_2) > _TOLERANCE *
             0.75)
@@ -1740,8 +1744,9 @@ def _run_Z(m, X, V):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-S_dot) velocity of the connection point
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y
@@ -1749,12 +1754,14 @@ def _run_Z(m, X, V):
         rpr_qd_1 = inv_rpr_q_2*(axis_x_rpr_axes1_x*t_dot_y - axis_x_rpr_axes1_y*t_dot_x)
         # (rpr-W_1) centripetal tensor of link 1
         rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-bias) acceleration of the connection point at zero joint accelerations
+        rpr_bias_in_axes1_y = 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-B_1_o) remainder of the acceleration tensor of link 1
-        rpr_B_1_o_in_axes1_xy = 2.0*inv_rpr_q_2*rpr_S_dot_in_axes1_x*rpr_qd_1
+        rpr_B_1_o_in_axes1_xy = inv_rpr_q_2*rpr_bias_in_axes1_y
+        # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_t = rpr_W_1_t*rpr_h_2_in_spec1_x
         # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_o_in_axes1_x = (
-        rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_y - rpr_W_1_t*rpr_h_2_in_spec1_x
-        )
+        rpr_phi_2_o_in_axes1_x = rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_y - rpr_phi_2_t
         # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
         rpr_h_group_1_in_axes1_y*(axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y) -
@@ -1762,10 +1769,11 @@ def _run_Z(m, X, V):
             rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_yy -
             rpr_h_group_1_in_axes1_x*(axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x)
         )
+        # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_t = rpr_W_1_t*rpr_h_2_in_spec1_y
         # (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rpr_c_o_in_axes1_y = (
-        rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_x + rpr_W_1_t*rpr_h_2_in_spec1_y -
-            inv_rpr_q_2*rpr_mu_1_o_in_axes1_z
+        rpr_c_t + rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_x - inv_rpr_q_2*rpr_mu_1_o_in_axes1_z
         )
         # (rpr-U) velocity and gravity terms of the leg force
         rpr_U_x = (
@@ -1815,18 +1823,18 @@ def _run_H(m, X):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-w_1) reciprocal vector 1
-        rpr_w_1_in_axes1_y = 1.0/rpr_q_2
-        # (rpr-w_2) reciprocal vector 2
-        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
-        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
+        axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         ok = (
         ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_q_2) > _TOLERANCE *
             0.75)
         )
         # (rpr-w_2) reciprocal vector 2
-        out_H[_H_rpr[0][leg]] = rpr_w_2_x
-        out_H[_H_rpr[1][leg]] = rpr_w_2_y
+        out_H[_H_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_H[_H_rpr[1][leg]] = axis_x_rpr_axes1_y
     return ok, (out_H,)
 
 
@@ -1889,20 +1897,22 @@ def _run_required(m, X, V, A):
         # (rpr-W_1) centripetal tensor of link 1
         rpr_W_1_t = rpr_qd_1*rpr_qd_1
         # (rpr-S_ddot) acceleration of the connection point
+        rpr_S_ddot_in_axes1_x = axis_x_rpr_axes1_x*t_ddot_x + axis_x_rpr_axes1_y*t_ddot_y
         rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*t_ddot_y - axis_x_rpr_axes1_y*t_ddot_x
+        # (rpr-bias) acceleration of the connection point at zero joint accelerations
+        rpr_bias_in_axes1_y = 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
+        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
         rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
         rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
-        rpr_acc_2_in_axes1_x = (
-        axis_x_rpr_axes1_x*t_ddot_x + axis_x_rpr_axes1_y*t_ddot_y - rpr_g_in_axes1_x
-        )
+        rpr_acc_2_in_axes1_x = rpr_S_ddot_in_axes1_x - rpr_g_in_axes1_x
         rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_in_axes1_x = -rpr_W_1_t*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1
+        rpr_phi_2_t = rpr_W_1_t*rpr_h_2_in_spec1_x
+        rpr_phi_2_in_axes1_x = -rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_in_axes1_z = (
         rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
@@ -1910,9 +1920,9 @@ def _run_required(m, X, V, A):
             rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_t = rpr_W_1_t*rpr_h_2_in_spec1_y
         rpr_c_in_axes1_y = (
-        rpr_W_1_t*rpr_h_2_in_spec1_y - inv_rpr_q_2*rpr_mu_1_in_axes1_z -
-            rpr_h_2_in_spec1_x*rpr_qdd_1
+        rpr_c_t - inv_rpr_q_2*rpr_mu_1_in_axes1_z - rpr_h_2_in_spec1_x*rpr_qdd_1
         )
         rpr_c_x = -axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x - axis_x_rpr_axes1_y*rpr_c_in_axes1_y
         rpr_c_y = axis_x_rpr_axes1_x*rpr_c_in_axes1_y - axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x
@@ -1961,9 +1971,13 @@ def _run_inverse_kinematics(m, X):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-q_1) displacement of joint 1
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
-        rpr_q_1 = atan2(inv_rpr_q_2*rpr_S_in_turn1_y, inv_rpr_q_2*rpr_S_in_turn1_x)
+        rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
+        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
+        rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
+        # (rpr-q_1) displacement of joint 1
+        rpr_q_1 = atan2(rpr_s_1, rpr_c_1)
         ok = (
         ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_q_2) > _TOLERANCE *
             0.75)
@@ -2005,8 +2019,9 @@ def _run_joint_rates(m, X, V):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-S_dot) velocity of the connection point
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y
@@ -2058,21 +2073,24 @@ def _run_joint_accelerations(m, X, V, A):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-S_dot) velocity of the connection point
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y
         # (rpr-qd_1) rate of joint 1
         rpr_qd_1 = inv_rpr_q_2*(axis_x_rpr_axes1_x*t_dot_y - axis_x_rpr_axes1_y*t_dot_x)
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
+        # (rpr-S_ddot) acceleration of the connection point
+        rpr_S_ddot_in_axes1_x = axis_x_rpr_axes1_x*t_ddot_x + axis_x_rpr_axes1_y*t_ddot_y
+        rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*t_ddot_y - axis_x_rpr_axes1_y*t_ddot_x
+        # (rpr-bias) acceleration of the connection point at zero joint accelerations
+        rpr_bias_in_axes1_y = 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_in_axes1_x = (
-        axis_x_rpr_axes1_x*t_ddot_x + axis_x_rpr_axes1_y*t_ddot_y + rpr_q_2*rpr_qd_1*rpr_qd_1
-        )
-        rpr_rel_in_axes1_y = (
-        axis_x_rpr_axes1_x*t_ddot_y - axis_x_rpr_axes1_y*t_ddot_x -
-            2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
-        )
+        rpr_rel_in_axes1_x = rpr_S_ddot_in_axes1_x + rpr_W_1_t*rpr_q_2
+        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         ok = (
@@ -2138,18 +2156,22 @@ def _run_legs(m, X, V, A):
         # (rpr-W_1) centripetal tensor of link 1
         rpr_W_1_t = rpr_qd_1*rpr_qd_1
         # (rpr-S_ddot) acceleration of the connection point
+        rpr_S_ddot_in_axes1_x = axis_x_rpr_axes1_x*t_ddot_x + axis_x_rpr_axes1_y*t_ddot_y
         rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*t_ddot_y - axis_x_rpr_axes1_y*t_ddot_x
+        # (rpr-bias) acceleration of the connection point at zero joint accelerations
+        rpr_bias_in_axes1_y = 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
+        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
         rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
         rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
-        rpr_acc_2_in_axes1_x = (
-        axis_x_rpr_axes1_x*t_ddot_x + axis_x_rpr_axes1_y*t_ddot_y - rpr_g_in_axes1_x
-        )
+        rpr_acc_2_in_axes1_x = rpr_S_ddot_in_axes1_x - rpr_g_in_axes1_x
         rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
+        # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_t = rpr_W_1_t*rpr_h_2_in_spec1_x
+        rpr_phi_2_in_axes1_x = -rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_in_axes1_z = (
         rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
@@ -2157,15 +2179,12 @@ def _run_legs(m, X, V, A):
             rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_t = rpr_W_1_t*rpr_h_2_in_spec1_y
         rpr_c_in_axes1_y = (
-        rpr_W_1_t*rpr_h_2_in_spec1_y - inv_rpr_q_2*rpr_mu_1_in_axes1_z -
-            rpr_h_2_in_spec1_x*rpr_qdd_1
+        rpr_c_t - inv_rpr_q_2*rpr_mu_1_in_axes1_z - rpr_h_2_in_spec1_x*rpr_qdd_1
         )
         # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
-        rpr_c_true_in_axes1_x = (
-        rpr_W_1_t*rpr_h_2_in_spec1_x + rpr_h_2_in_spec1_y*rpr_qdd_1 -
-            rpr_acc_2_in_axes1_x*rpr_link2_mass
-        )
+        rpr_c_true_in_axes1_x = -rpr_phi_2_in_axes1_x - rpr_acc_2_in_axes1_x*rpr_link2_mass
         rpr_c_true_in_axes1_y = rpr_c_in_axes1_y - rpr_acc_2_in_axes1_y*rpr_link2_mass
         rpr_c_true_x = (
         axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x - axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y
@@ -2222,12 +2241,15 @@ def _run_potential(m, X):
         rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
+        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
         # (potential) potential energy
         rpr_potential_t_3 = (
-        (rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
+        rpr_g_in_axes1_x*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
             rpr_link1_mass*(rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)) +
-            (rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1)*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y
-            + rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1))
+            rpr_g_in_axes1_y*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y +
+            rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1))
         )
         ok = (
         ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_q_2) > _TOLERANCE *
@@ -2277,11 +2299,11 @@ def _run_condition(m, X):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-w_1) reciprocal vector 1
-        rpr_w_1_in_axes1_y = 1.0/rpr_q_2
-        # (rpr-w_2) reciprocal vector 2
-        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
-        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
+        axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         # (rpr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rpr_pivot_size = abs(rpr_q_2_t)
         rpr_pivot_size_2 = abs(rpr_q_2)
@@ -2299,8 +2321,8 @@ def _run_condition(m, X):
         # (spread) rms distance of the platform points from their centroid
         spread_rpr += rpr_spread_t_3
         # (rpr-w_2) reciprocal vector 2
-        out_H[_H_rpr[0][leg]] = rpr_w_2_x
-        out_H[_H_rpr[1][leg]] = rpr_w_2_y
+        out_H[_H_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_H[_H_rpr[1][leg]] = axis_x_rpr_axes1_y
         # (rpr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rpr[0][leg]] = rpr_least_pivots
     # (spread) rms distance of the platform points from their centroid
@@ -2443,11 +2465,11 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_1 = q[[1, 3]]
-    gap = q_actuated - q_of_inverse_kinematics_from_1
-    return (gap,)
+    residual = q_actuated - q_of_inverse_kinematics_from_1
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -2456,7 +2478,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

@@ -145,9 +145,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -209,6 +209,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -257,7 +281,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -267,7 +291,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -280,7 +304,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -297,16 +321,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -314,7 +338,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1366,8 +1399,8 @@ INLINE void doubt(int known, int found, real *unreachable, real *overflow)
     *unreachable += UNLESS(found || !known);
 }
 
-/* The bound that is missed by most, n if none; sign is 1 for a lower, -1 for an upper one. */
-static size_t missed_bound(size_t n, const real *start, const real *t, const real *least,
+/* The bound that is violated by most, n if none; sign is 1 for a lower, -1 for an upper one. */
+static size_t violated_bound(size_t n, const real *start, const real *t, const real *least,
         const real *most, const real *side, real *sign)
 {
     const real size = largest(start, n), endless = largest(start + n, n);
@@ -1375,13 +1408,13 @@ static size_t missed_bound(size_t n, const real *start, const real *t, const rea
     size_t worst = n;
     for (size_t k = 0; k < 2*n; ++k) {
         const size_t i = k < n ? k : k - n;
-        const real s = k < n ? 1 : -1, bound = k < n ? least[i] : most[i], gap = s*(bound - t[i]);
+        const real s = k < n ? 1 : -1, bound = k < n ? least[i] : most[i], excess = s*(bound - t[i]);
         const real rate = magnitude(t[n + i]) > PIVOT*endless ? -s*t[n + i] : 0;
-        const int is_missed = rate > 0 || (rate >= 0 && gap > PIVOT*(size + magnitude(bound)));
-        if (is_missed && is_finite(bound) && !(magnitude(side[i]) > 0)
-            && (rate > second || (rate >= second && gap > first))) {
+        const int is_violated = rate > 0 || (rate >= 0 && excess > PIVOT*(size + magnitude(bound)));
+        if (is_violated && is_finite(bound) && !(magnitude(side[i]) > 0)
+            && (rate > second || (rate >= second && excess > first))) {
             worst = i;
-            first = gap;
+            first = excess;
             second = rate;
             *sign = s;
         }
@@ -1403,11 +1436,11 @@ static void at_bounds(size_t n, const real *gram, const real *side, const real *
     solve_one(n, stride, rows, x, &unsure);
 }
 
-/* Points from amounts of the normals. */
-static void moved_by(size_t n, const real *start, const real *gram, const real *amounts, real *t)
+/* Points from coefficients of the normals. */
+static void moved_by(size_t n, const real *start, const real *gram, const real *coefficients, real *t)
 {
     for (size_t e = 0; e < 2*n; ++e) {
-        const real *const row = gram + e%n*n, *const own = amounts + (e < n ? 0 : n);
+        const real *const row = gram + e%n*n, *const own = coefficients + (e < n ? 0 : n);
         t[e] = start[e];
         for (size_t j = 0; j < n; ++j) {
             t[e] += row[j]*own[j];
@@ -1419,14 +1452,14 @@ static void moved_by(size_t n, const real *start, const real *gram, const real *
 static void settle(size_t n, const real *start, const real *gram, const real *least,
         const real *most, const real *side, real *t)
 {
-    real amounts[2*BIG] = {0}, right[2*BIG] = {0};
+    real coefficients[2*BIG] = {0}, right[2*BIG] = {0};
     for (size_t i = 0; i < n; ++i) {
         right[i] = (side[i] > 0 ? least[i] : most[i]) - start[i];
         right[n + i] = -start[n + i];
     }
-    at_bounds(n, gram, side, right, amounts);
-    at_bounds(n, gram, side, right + n, amounts + n);
-    moved_by(n, start, gram, amounts, t);
+    at_bounds(n, gram, side, right, coefficients);
+    at_bounds(n, gram, side, right + n, coefficients + n);
+    moved_by(n, start, gram, coefficients, t);
     for (size_t i = 0; i < n; ++i) {
         t[i] = side[i] > 0 || t[i] < least[i] ? least[i] : side[i] < 0 || t[i] > most[i] ? most[i] : t[i];
     }
@@ -1438,11 +1471,11 @@ static void settle(size_t n, const real *start, const real *gram, const real *le
 static int nearest_point(size_t n, const real *start, const real *gram, const real *least,
         const real *most, real *t)
 {
-    real amounts[2*BIG] = {0}, side[BIG] = {0}, right[BIG] = {0}, without[BIG] = {0}, sign = 0;
+    real coefficients[2*BIG] = {0}, side[BIG] = {0}, right[BIG] = {0}, without[BIG] = {0}, sign = 0;
     size_t p = n;
     for (size_t turn = 0; turn < TURNS*n; ++turn) {
-        moved_by(n, start, gram, amounts, t);
-        p = p < n ? p : missed_bound(n, start, t, least, most, side, &sign);
+        moved_by(n, start, gram, coefficients, t);
+        p = p < n ? p : violated_bound(n, start, t, least, most, side, &sign);
         if (p >= n) {
             settle(n, start, gram, least, most, side, t);
             return 1;
@@ -1466,7 +1499,7 @@ static int nearest_point(size_t n, const real *start, const real *gram, const re
         }
         for (size_t i = 0; i < n; ++i) {
             const real share = side[i]*without[i] > clear ? without[i] : R(INFINITY);
-            const real shift = amounts[i]/share, rate = amounts[n + i]/share;
+            const real shift = coefficients[i]/share, rate = coefficients[n + i]/share;
             if (is_finite(share)
                 && (leaving == 2*n || rate < second || (rate <= second && shift < first))) {
                 leaving = i;
@@ -1478,16 +1511,16 @@ static int nearest_point(size_t n, const real *start, const real *gram, const re
             return 0;
         }
         for (size_t i = 0; i < n; ++i) {
-            amounts[i] -= without[i]*first;
-            amounts[n + i] -= without[i]*second;
+            coefficients[i] -= without[i]*first;
+            coefficients[n + i] -= without[i]*second;
         }
-        amounts[p] += sign*first;
-        amounts[n + p] += sign*second;
+        coefficients[p] += sign*first;
+        coefficients[n + p] += sign*second;
         if (leaving == n) {
             side[p] = sign;
             p = n;
         } else {
-            side[leaving] = amounts[leaving] = amounts[n + leaving] = 0;
+            side[leaving] = coefficients[leaving] = coefficients[n + leaving] = 0;
         }
     }
     return 0;
@@ -1522,13 +1555,13 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real rrr_Kd_1, rrr_Kc_1, rrr_Ks_1, rrr_rho2_1, rrr_disc_1, rrr_root_1, inv_rrr_rho2_1, rrr_c_1,
-        rrr_s_1, rrr_x_2_in_axes1_x, rrr_c_2, rrr_s_2, rrr_r_1_in_axes1_y, rrr_r_1_in_axes1_x,
-        rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, rrr_w_1_t, rrr_w_1_t_2, axis_y_rrr_axes2_x,
-        axis_x_rrr_axes2_x, rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y, rrr_qd_1_t, rrr_qd_1_t_2,
-        rrr_W_1_in_axes1_xx, rrr_W_2_t, rrr_bias_in_axes2_x, rrr_w_2_in_axes2_x,
-        rrr_d_Gamma_2_in_axes2_x, rrr_d_Gamma_1_in_axes2_x, rrr_d_c_in_axes2_xy, rrr_acc_2_in_axes2_x,
-        rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
+    real rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2, rrr_r_1_in_axes2_x,
+        rrr_r_1_in_axes2_y, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_w_1_in_axes2_x, rrr_w_1_x,
+        rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y,
+        rrr_mu_1_t_3, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qd_1, rrr_qd_2, rrr_bias_t,
+        rrr_bias_in_axes2_x, rrr_c_t, rrr_c_t_2, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx, rrr_Q_xy, rrr_Q_yy,
+        rrr_U_x, rrr_U_y, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x,
+        rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_rrr
@@ -1550,69 +1583,61 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
         rrr_S_y*m->rrr_base_frame_yy[i]);
     /* (rrr-rho2_1) squared amplitude */
-    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+    v->rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
-    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+    v->rrr_disc_1 = v->rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
     /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
+    const real rrr_root_1 = m->rrr_branch_1[i]*root(v->rrr_disc_1);
     /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-    const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+    const real inv_rrr_rho2_1 = 1/v->rrr_rho2_1;
+    v->rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
+    v->rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real rrr_c_2 =
-        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
+    v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rrr_s_2 =
+    v->rrr_s_2 =
         -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*rrr_s_2;
+    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*v->rrr_s_2;
     const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
-        rrr_c_2*m->rrr_platform_joint_offset_x[i];
-    const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-    const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        v->rrr_c_2*m->rrr_platform_joint_offset_x[i];
+    v->rrr_r_1_in_axes2_x = v->rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*v->rrr_s_2;
+    v->rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*v->rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
-    const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
+    const real rrr_w_1_t = v->rrr_c_2*v->rrr_s_1 + v->rrr_c_1*v->rrr_s_2;
+    const real rrr_w_1_t_2 = v->rrr_c_1*v->rrr_c_2 - v->rrr_s_1*v->rrr_s_2;
+    v->axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_w_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
+    v->axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_yx[i]*rrr_w_1_t;
-    const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-    const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
-    const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
-    /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
-    const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-    v->rrr_Kd_1 = rrr_Kd_1;
-    v->rrr_Kc_1 = rrr_Kc_1;
-    v->rrr_Ks_1 = rrr_Ks_1;
-    v->rrr_rho2_1 = rrr_rho2_1;
-    v->rrr_disc_1 = rrr_disc_1;
-    v->rrr_root_1 = rrr_root_1;
-    v->inv_rrr_rho2_1 = inv_rrr_rho2_1;
-    v->rrr_c_1 = rrr_c_1;
-    v->rrr_s_1 = rrr_s_1;
-    v->rrr_x_2_in_axes1_x = rrr_x_2_in_axes1_x;
-    v->rrr_c_2 = rrr_c_2;
-    v->rrr_s_2 = rrr_s_2;
-    v->rrr_r_1_in_axes1_y = rrr_r_1_in_axes1_y;
-    v->rrr_r_1_in_axes1_x = rrr_r_1_in_axes1_x;
-    v->rrr_r_1_in_axes2_x = rrr_r_1_in_axes2_x;
-    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
-    v->rrr_w_1_t = rrr_w_1_t;
-    v->rrr_w_1_t_2 = rrr_w_1_t_2;
-    v->axis_y_rrr_axes2_x = axis_y_rrr_axes2_x;
-    v->axis_x_rrr_axes2_x = axis_x_rrr_axes2_x;
-    v->rrr_w_1_in_axes2_x = rrr_w_1_in_axes2_x;
-    v->rrr_w_1_x = rrr_w_1_x;
-    v->rrr_w_1_y = rrr_w_1_y;
-    v->rrr_qd_1_t = rrr_qd_1_t;
-    v->rrr_qd_1_t_2 = rrr_qd_1_t_2;
+    v->rrr_w_1_in_axes2_x = -1/v->rrr_r_1_in_axes2_y;
+    v->rrr_w_1_x = v->axis_x_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
+    v->rrr_w_1_y = -v->axis_y_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
+    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->rrr_g_in_axes2_x = v->axis_x_rrr_axes2_x*m->gravity_x -
+        v->axis_y_rrr_axes2_x*m->gravity_y;
+    v->rrr_g_in_axes2_y = v->axis_x_rrr_axes2_x*m->gravity_y +
+        v->axis_y_rrr_axes2_x*m->gravity_x;
+    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    v->rrr_g_in_axes1_x = v->rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v->rrr_s_1;
+    v->rrr_g_in_axes1_y = v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1;
+    v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
+        v->rrr_g_in_axes1_x*m->rrr_h_1_in_spec1_y[i];
+}
+
+INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
+{
+    /* (rrr-S_ddot) acceleration of the connection point */
+    const real t_ddot_x = A[0*w + j];
+    const real t_ddot_y = A[1*w + j];
+    v->rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*t_ddot_x -
+        v->axis_y_rrr_axes2_x*t_ddot_y;
+    v->rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*t_ddot_y +
+        v->axis_y_rrr_axes2_x*t_ddot_x;
 }
 
 INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1621,38 +1646,37 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rrr-qd_1) rate of joint 1 */
     const real t_dot_x = V[0*w + j];
     const real t_dot_y = V[1*w + j];
-    const real rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*t_dot_x -
+    v->rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*t_dot_x -
         v->axis_y_rrr_axes2_x*t_dot_y);
+    /* (rrr-qd_2) rate of joint 2 */
+    v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*t_dot_y +
+        v->axis_y_rrr_axes2_x*t_dot_x - v->rrr_qd_1*v->rrr_r_1_in_axes2_x);
     /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1;
+    const real rrr_W_1_in_axes1_xx = -v->rrr_qd_1*v->rrr_qd_1;
     /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-        m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*t_dot_y +
-        v->axis_y_rrr_axes2_x*t_dot_x - rrr_qd_1*v->rrr_r_1_in_axes2_x);
+    const real rrr_omega_2_in_axes2_z = v->rrr_qd_1 + v->rrr_qd_2;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v->rrr_c_2*m->rrr_joint2_offset_x[i]
-        - rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
-    v->rrr_W_1_in_axes1_xx = rrr_W_1_in_axes1_xx;
-    v->rrr_W_2_t = rrr_W_2_t;
-    v->rrr_bias_in_axes2_x = rrr_bias_in_axes2_x;
+    v->rrr_bias_t = rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
+    v->rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
+    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->rrr_c_t = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i];
+    v->rrr_c_t_2 = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i];
 }
 
-INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
+INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes2_y = v->rrr_c_2*m->rrr_platform_joint_offset_x[i]*v->rrr_s_2 -
-        v->rrr_r_1_in_axes1_x*v->rrr_s_2;
-    /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-    const real rrr_w_1_x = rrr_w_1_in_axes2_x*(m->rrr_base_frame_yy[i]*v->rrr_w_1_t_2 -
-        m->rrr_base_frame_yx[i]*v->rrr_w_1_t);
-    const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(m->rrr_base_frame_xy[i]*v->rrr_w_1_t_2 -
-        m->rrr_base_frame_xx[i]*v->rrr_w_1_t);
-    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
-    v->rrr_w_1_x = rrr_w_1_x;
-    v->rrr_w_1_y = rrr_w_1_y;
+    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_rel_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
+    const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y + v->rrr_bias_t;
+    /* (rrr-qdd_1) acceleration of joint 1 */
+    v->rrr_qdd_1_t = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    /* (rrr-qdd_2) acceleration of joint 2 */
+    v->rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
+        v->rrr_qdd_1_t*v->rrr_r_1_in_axes2_x);
 }
 
 INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
@@ -1674,45 +1698,71 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
     const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
         m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
         m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
-    v->rrr_w_2_in_axes2_x = rrr_w_2_in_axes2_x;
-    v->rrr_d_Gamma_2_in_axes2_x = rrr_d_Gamma_2_in_axes2_x;
-    v->rrr_d_Gamma_1_in_axes2_x = rrr_d_Gamma_1_in_axes2_x;
-    v->rrr_d_c_in_axes2_xy = rrr_d_c_in_axes2_xy;
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v->rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x)
+        - m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_1_in_axes2_x*v->rrr_w_1_in_axes2_x -
+        rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+    const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
+        v->axis_x_rrr_axes2_x*rrr_Q_t_2;
+    const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
+        v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+    v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
 }
 
-INLINE void stage_rrr_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
-    *A, values_rrr *v)
+INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-S_ddot) acceleration of the connection point */
-    const real t_ddot_x = A[0*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*t_ddot_x -
-        v->axis_y_rrr_axes2_x*t_ddot_y;
-    const real rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*t_ddot_y +
-        v->axis_y_rrr_axes2_x*t_ddot_x;
-    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y +
-        v->rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
-    /* (rrr-B_1) acceleration tensor of link 1 */
-    const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    /* (rrr-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rrr_qdd_1_o = -v->rrr_bias_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_alpha_2_o_in_axes2_z = rrr_qdd_1_o +
+        m->rrr_w_2_in_axes2_y[i]*(v->rrr_bias_t - rrr_qdd_1_o*v->rrr_r_1_in_axes2_x);
+    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_mu_2_o_in_axes2_z = v->rrr_g_in_axes2_x*m->rrr_h_2_in_spec2_y[i] -
+        v->rrr_g_in_axes2_y*m->rrr_h_2_in_spec2_x[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
+    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_mu_1_o_in_axes1_z = m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o -
+        v->rrr_mu_1_t_3;
+    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rrr_c_o_in_axes2_x = v->rrr_c_t +
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
+        v->rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v->rrr_r_1_in_axes2_x -
+        rrr_N_1_o_in_axes1_z);
+    const real rrr_c_o_in_axes2_y = v->rrr_c_t_2 -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
+    /* (rrr-U) velocity and gravity terms of the leg force */
+    v->rrr_U_x = -v->axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
+    v->rrr_U_y = v->axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+}
+
+INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
+{
     /* (rrr-alpha_2) angular acceleration of link 2 */
-    const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
-        rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
+    const real rrr_alpha_2_in_axes2_z = v->rrr_qdd_2 - v->rrr_qdd_1_t;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_in_axes2_x = v->axis_y_rrr_axes2_x*m->gravity_y -
-        v->axis_x_rrr_axes2_x*m->gravity_x + rrr_S_ddot_in_axes2_x;
-    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
-        v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
+    v->rrr_acc_2_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_g_in_axes2_x;
+    v->rrr_acc_2_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_g_in_axes2_y;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_mu_2_in_axes2_z = rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+    const real rrr_mu_2_in_axes2_z = v->rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        v->rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v->rrr_s_1) -
-        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1)
-        - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
+    const real rrr_mu_1_in_axes1_z = -v->rrr_mu_1_t_3 -
+        m->rrr_J_1_in_spec1_zz[i]*v->rrr_qdd_1_t;
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
@@ -1721,26 +1771,21 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t w, size_t i, size_
     const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_in_axes2_x = v->rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
+    v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_in_axes2_y;
-    v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
-    v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
-    v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
-    v->rrr_c_in_axes2_y = rrr_c_in_axes2_y;
+    v->rrr_c_in_axes2_y = v->rrr_c_t_2 - rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] -
+        rrr_G_in_axes2_y;
 }
 
 typedef struct {
-    real rrr_leg1_Kd_1, rrr_leg1_Kc_1, rrr_leg1_Ks_1, rrr_leg1_rho2_1, rrr_leg1_disc_1,
-        rrr_leg1_root_1, inv_rrr_leg1_rho2_1, rrr_leg1_c_1, rrr_leg1_s_1, rrr_leg1_x_2_in_axes1_x,
-        rrr_leg1_c_2, rrr_leg1_s_2, rrr_leg1_r_1_in_axes1_y, rrr_leg1_r_1_in_axes1_x,
+    real rrr_leg1_rho2_1, rrr_leg1_disc_1, rrr_leg1_c_1, rrr_leg1_s_1, rrr_leg1_c_2, rrr_leg1_s_2,
         rrr_leg1_r_1_in_axes2_x, rrr_leg1_r_1_in_axes2_y, axis_y_rrr_leg1_axes2_x,
         axis_x_rrr_leg1_axes2_x, rrr_leg1_w_1_in_axes2_x, rrr_leg1_w_1_x, rrr_leg1_w_1_y,
-        rrr_leg1_w_2_in_axes2_x, rrr_leg1_w_2_x, rrr_leg1_w_2_y, rrr_leg1_qd_1_t, rrr_leg1_qd_1_t_2,
-        rrr_leg1_W_1_in_axes1_xx, rrr_leg1_W_2_t, rrr_leg1_bias_in_axes2_x,
-        rrr_leg1_d_Gamma_2_in_axes2_x, rrr_leg1_d_Gamma_1_in_axes2_x, rrr_leg1_d_c_in_axes2_xy,
+        rrr_leg1_w_2_in_axes2_x, rrr_leg1_w_2_x, rrr_leg1_w_2_y, rrr_leg1_g_in_axes2_x,
+        rrr_leg1_g_in_axes2_y, rrr_leg1_g_in_axes1_x, rrr_leg1_g_in_axes1_y, rrr_leg1_mu_1_t_3,
+        rrr_leg1_S_ddot_in_axes2_x, rrr_leg1_S_ddot_in_axes2_y, rrr_leg1_qd_1, rrr_leg1_qd_2,
+        rrr_leg1_bias_t, rrr_leg1_bias_in_axes2_x, rrr_leg1_c_t, rrr_leg1_c_t_2, rrr_leg1_qdd_1_t,
+        rrr_leg1_qdd_2, rrr_leg1_Q_xx, rrr_leg1_Q_xy, rrr_leg1_Q_yy, rrr_leg1_U_x, rrr_leg1_U_y,
         rrr_leg1_acc_2_in_axes2_x, rrr_leg1_acc_2_in_axes2_y, rrr_leg1_c_in_axes2_x,
         rrr_leg1_c_in_axes2_y;
 } values_rrr_leg1;
@@ -1769,82 +1814,80 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
         m->rrr_leg1_joint2_offset_x[i]*(rrr_leg1_S_x*m->rrr_leg1_base_frame_xy[i] +
         rrr_leg1_S_y*m->rrr_leg1_base_frame_yy[i]);
     /* (rrr_leg1-rho2_1) squared amplitude */
-    const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
+    v->rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
     /* (rrr_leg1-disc_1) discriminant */
-    const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
+    v->rrr_leg1_disc_1 = v->rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
     /* (rrr_leg1-root_1) root, with the sign of the branch */
-    const real rrr_leg1_root_1 = m->rrr_leg1_branch_1[i]*root(rrr_leg1_disc_1);
+    const real rrr_leg1_root_1 = m->rrr_leg1_branch_1[i]*root(v->rrr_leg1_disc_1);
     /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
-    const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
+    const real inv_rrr_leg1_rho2_1 = 1/v->rrr_leg1_rho2_1;
+    v->rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
         rrr_leg1_Ks_1*rrr_leg1_root_1);
     /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kd_1*rrr_leg1_Ks_1 +
+    v->rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kd_1*rrr_leg1_Ks_1 +
         rrr_leg1_Kc_1*rrr_leg1_root_1);
     /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
     const real rrr_leg1_x_2_in_axes1_x =
         m->inv_rrr_leg1_size_t[i]*rrr_leg1_Kd_1*m->rrr_leg1_joint2_offset_x[i] -
         m->rrr_leg1_joint2_offset_x[i];
     /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real rrr_leg1_c_2 =
+    v->rrr_leg1_c_2 =
         m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_platform_joint_offset_x[i]*rrr_leg1_x_2_in_axes1_x;
     /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rrr_leg1_s_2 =
+    v->rrr_leg1_s_2 =
         -m->inv_rrr_leg1_size_t[i]*m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_joint2_offset_x[i]*m->rrr_leg1_platform_joint_offset_x[i]*rrr_leg1_root_1;
     /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_leg1_r_1_in_axes1_y = m->rrr_leg1_platform_joint_offset_x[i]*rrr_leg1_s_2;
+    const real rrr_leg1_r_1_in_axes1_y =
+        m->rrr_leg1_platform_joint_offset_x[i]*v->rrr_leg1_s_2;
     const real rrr_leg1_r_1_in_axes1_x = m->rrr_leg1_joint2_offset_x[i] +
-        rrr_leg1_c_2*m->rrr_leg1_platform_joint_offset_x[i];
-    const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-        rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
-    const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
-        rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
+        v->rrr_leg1_c_2*m->rrr_leg1_platform_joint_offset_x[i];
+    v->rrr_leg1_r_1_in_axes2_x = v->rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
+        rrr_leg1_r_1_in_axes1_y*v->rrr_leg1_s_2;
+    v->rrr_leg1_r_1_in_axes2_y = v->rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
+        rrr_leg1_r_1_in_axes1_x*v->rrr_leg1_s_2;
     /* (rrr_leg1-w_1) reciprocal vector 1 */
-    const real rrr_leg1_w_1_t = rrr_leg1_c_2*rrr_leg1_s_1 + rrr_leg1_c_1*rrr_leg1_s_2;
-    const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
-    const real axis_y_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_xy[i]*rrr_leg1_w_1_t_2 -
+    const real rrr_leg1_w_1_t = v->rrr_leg1_c_2*v->rrr_leg1_s_1 +
+        v->rrr_leg1_c_1*v->rrr_leg1_s_2;
+    const real rrr_leg1_w_1_t_2 = v->rrr_leg1_c_1*v->rrr_leg1_c_2 -
+        v->rrr_leg1_s_1*v->rrr_leg1_s_2;
+    v->axis_y_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_xy[i]*rrr_leg1_w_1_t_2 -
         m->rrr_leg1_base_frame_xx[i]*rrr_leg1_w_1_t;
-    const real axis_x_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_yy[i]*rrr_leg1_w_1_t_2 -
+    v->axis_x_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_yy[i]*rrr_leg1_w_1_t_2 -
         m->rrr_leg1_base_frame_yx[i]*rrr_leg1_w_1_t;
-    const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
-    const real rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
-    const real rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
+    v->rrr_leg1_w_1_in_axes2_x = -1/v->rrr_leg1_r_1_in_axes2_y;
+    v->rrr_leg1_w_1_x = v->axis_x_rrr_leg1_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
+    v->rrr_leg1_w_1_y = -v->axis_y_rrr_leg1_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
     /* (rrr_leg1-w_2) reciprocal vector 2 */
-    const real rrr_leg1_w_2_in_axes2_x =
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
-    const real rrr_leg1_w_2_x = axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] +
-        axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
-    const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] -
-        axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
-    /* (rrr_leg1-qd_1) rate of joint 1 */
-    const real rrr_leg1_qd_1_t = rrr_leg1_c_2*rrr_leg1_s_1 + rrr_leg1_c_1*rrr_leg1_s_2;
-    const real rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
-    v->rrr_leg1_Kd_1 = rrr_leg1_Kd_1;
-    v->rrr_leg1_Kc_1 = rrr_leg1_Kc_1;
-    v->rrr_leg1_Ks_1 = rrr_leg1_Ks_1;
-    v->rrr_leg1_rho2_1 = rrr_leg1_rho2_1;
-    v->rrr_leg1_disc_1 = rrr_leg1_disc_1;
-    v->rrr_leg1_root_1 = rrr_leg1_root_1;
-    v->inv_rrr_leg1_rho2_1 = inv_rrr_leg1_rho2_1;
-    v->rrr_leg1_c_1 = rrr_leg1_c_1;
-    v->rrr_leg1_s_1 = rrr_leg1_s_1;
-    v->rrr_leg1_x_2_in_axes1_x = rrr_leg1_x_2_in_axes1_x;
-    v->rrr_leg1_c_2 = rrr_leg1_c_2;
-    v->rrr_leg1_s_2 = rrr_leg1_s_2;
-    v->rrr_leg1_r_1_in_axes1_y = rrr_leg1_r_1_in_axes1_y;
-    v->rrr_leg1_r_1_in_axes1_x = rrr_leg1_r_1_in_axes1_x;
-    v->rrr_leg1_r_1_in_axes2_x = rrr_leg1_r_1_in_axes2_x;
-    v->rrr_leg1_r_1_in_axes2_y = rrr_leg1_r_1_in_axes2_y;
-    v->axis_y_rrr_leg1_axes2_x = axis_y_rrr_leg1_axes2_x;
-    v->axis_x_rrr_leg1_axes2_x = axis_x_rrr_leg1_axes2_x;
-    v->rrr_leg1_w_1_in_axes2_x = rrr_leg1_w_1_in_axes2_x;
-    v->rrr_leg1_w_1_x = rrr_leg1_w_1_x;
-    v->rrr_leg1_w_1_y = rrr_leg1_w_1_y;
-    v->rrr_leg1_w_2_in_axes2_x = rrr_leg1_w_2_in_axes2_x;
-    v->rrr_leg1_w_2_x = rrr_leg1_w_2_x;
-    v->rrr_leg1_w_2_y = rrr_leg1_w_2_y;
-    v->rrr_leg1_qd_1_t = rrr_leg1_qd_1_t;
-    v->rrr_leg1_qd_1_t_2 = rrr_leg1_qd_1_t_2;
+    v->rrr_leg1_w_2_in_axes2_x =
+        -v->rrr_leg1_r_1_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
+    v->rrr_leg1_w_2_x = v->axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] +
+        v->axis_x_rrr_leg1_axes2_x*v->rrr_leg1_w_2_in_axes2_x;
+    v->rrr_leg1_w_2_y = v->axis_x_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] -
+        v->axis_y_rrr_leg1_axes2_x*v->rrr_leg1_w_2_in_axes2_x;
+    /* (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->rrr_leg1_g_in_axes2_x = v->axis_x_rrr_leg1_axes2_x*m->gravity_x -
+        v->axis_y_rrr_leg1_axes2_x*m->gravity_y;
+    v->rrr_leg1_g_in_axes2_y = v->axis_x_rrr_leg1_axes2_x*m->gravity_y +
+        v->axis_y_rrr_leg1_axes2_x*m->gravity_x;
+    /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
+       */
+    v->rrr_leg1_g_in_axes1_x = v->rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
+        m->rrr_leg1_mu_1_t_2[i]*v->rrr_leg1_s_1;
+    v->rrr_leg1_g_in_axes1_y = v->rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
+        m->rrr_leg1_mu_1_t[i]*v->rrr_leg1_s_1;
+    v->rrr_leg1_mu_1_t_3 = v->rrr_leg1_g_in_axes1_y*m->rrr_leg1_h_1_in_spec1_x[i] -
+        v->rrr_leg1_g_in_axes1_x*m->rrr_leg1_h_1_in_spec1_y[i];
+}
+
+INLINE void stage_rrr_leg1_A_X(size_t w, size_t j, const real *A, values_rrr_leg1 *v)
+{
+    /* (rrr_leg1-S_ddot) acceleration of the connection point */
+    const real t_ddot_x = A[0*w + j];
+    const real t_ddot_y = A[1*w + j];
+    v->rrr_leg1_S_ddot_in_axes2_x = v->axis_x_rrr_leg1_axes2_x*t_ddot_x -
+        v->axis_y_rrr_leg1_axes2_x*t_ddot_y;
+    v->rrr_leg1_S_ddot_in_axes2_y = v->axis_x_rrr_leg1_axes2_x*t_ddot_y +
+        v->axis_y_rrr_leg1_axes2_x*t_ddot_x;
 }
 
 INLINE void stage_rrr_leg1_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1853,23 +1896,40 @@ INLINE void stage_rrr_leg1_V_X(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrr_leg1-qd_1) rate of joint 1 */
     const real t_dot_x = V[0*w + j];
     const real t_dot_y = V[1*w + j];
-    const real rrr_leg1_qd_1 = v->rrr_leg1_w_1_in_axes2_x*(v->axis_x_rrr_leg1_axes2_x*t_dot_x
-        - v->axis_y_rrr_leg1_axes2_x*t_dot_y);
+    v->rrr_leg1_qd_1 = v->rrr_leg1_w_1_in_axes2_x*(v->axis_x_rrr_leg1_axes2_x*t_dot_x -
+        v->axis_y_rrr_leg1_axes2_x*t_dot_y);
+    /* (rrr_leg1-qd_2) rate of joint 2 */
+    v->rrr_leg1_qd_2 = m->rrr_leg1_w_2_in_axes2_y[i]*(v->axis_x_rrr_leg1_axes2_x*t_dot_y +
+        v->axis_y_rrr_leg1_axes2_x*t_dot_x - v->rrr_leg1_qd_1*v->rrr_leg1_r_1_in_axes2_x);
     /* (rrr_leg1-W_1) centripetal tensor of link 1 */
-    const real rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1;
+    const real rrr_leg1_W_1_in_axes1_xx = -v->rrr_leg1_qd_1*v->rrr_leg1_qd_1;
     /* (rrr_leg1-omega_2) angular velocity of link 2 */
-    const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
-        m->rrr_leg1_w_2_in_axes2_y[i]*(v->axis_x_rrr_leg1_axes2_x*t_dot_y +
-        v->axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*v->rrr_leg1_r_1_in_axes2_x);
+    const real rrr_leg1_omega_2_in_axes2_z = v->rrr_leg1_qd_1 + v->rrr_leg1_qd_2;
     /* (rrr_leg1-W_2) centripetal tensor of link 2 */
     const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
     /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_leg1_bias_in_axes2_x =
+    v->rrr_leg1_bias_t =
+        rrr_leg1_W_1_in_axes1_xx*m->rrr_leg1_joint2_offset_x[i]*v->rrr_leg1_s_2;
+    v->rrr_leg1_bias_in_axes2_x =
         rrr_leg1_W_1_in_axes1_xx*v->rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i] -
         rrr_leg1_W_2_t*m->rrr_leg1_platform_joint_offset_x[i];
-    v->rrr_leg1_W_1_in_axes1_xx = rrr_leg1_W_1_in_axes1_xx;
-    v->rrr_leg1_W_2_t = rrr_leg1_W_2_t;
-    v->rrr_leg1_bias_in_axes2_x = rrr_leg1_bias_in_axes2_x;
+    /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->rrr_leg1_c_t = rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_x[i];
+    v->rrr_leg1_c_t_2 = rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_y[i];
+}
+
+INLINE void stage_rrr_leg1_A_V_X(const prepared *m, size_t i, values_rrr_leg1 *v)
+{
+    /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_leg1_rel_in_axes2_x = v->rrr_leg1_S_ddot_in_axes2_x -
+        v->rrr_leg1_bias_in_axes2_x;
+    const real rrr_leg1_rel_in_axes2_y = v->rrr_leg1_S_ddot_in_axes2_y + v->rrr_leg1_bias_t;
+    /* (rrr_leg1-qdd_1) acceleration of joint 1 */
+    v->rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
+    /* (rrr_leg1-qdd_2) acceleration of joint 2 */
+    v->rrr_leg1_qdd_2 = m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_in_axes2_y +
+        v->rrr_leg1_qdd_1_t*v->rrr_leg1_r_1_in_axes2_x);
 }
 
 INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_leg1 *v)
@@ -1890,51 +1950,82 @@ INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_le
     const real rrr_leg1_d_c_in_axes2_xy = m->rrr_leg1_d_phi_2_t[i] -
         m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_1_in_axes2_x -
         m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_2_in_axes2_x;
-    v->rrr_leg1_d_Gamma_2_in_axes2_x = rrr_leg1_d_Gamma_2_in_axes2_x;
-    v->rrr_leg1_d_Gamma_1_in_axes2_x = rrr_leg1_d_Gamma_1_in_axes2_x;
-    v->rrr_leg1_d_c_in_axes2_xy = rrr_leg1_d_c_in_axes2_xy;
+    /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_leg1_Q_t = m->rrr_leg1_h_2_in_spec2_y[i]*(v->rrr_leg1_w_1_in_axes2_x +
+        v->rrr_leg1_w_2_in_axes2_x) - m->rrr_leg1_d_c_in_axes2_yy[i] -
+        rrr_leg1_d_Gamma_1_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x -
+        rrr_leg1_d_Gamma_2_in_axes2_x*v->rrr_leg1_w_2_in_axes2_x;
+    const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
+    const real rrr_leg1_Q_t_3 = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy +
+        v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2;
+    const real rrr_leg1_Q_t_4 = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 -
+        v->axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
+    v->rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
+        2*v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
+    v->rrr_leg1_Q_xy = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
+        v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
+    v->rrr_leg1_Q_yy = -m->rrr_leg1_d_c_in_axes2_yy[i] -
+        2*v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
 }
 
-INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t w, size_t i, size_t j, const
-    real *A, values_rrr_leg1 *v)
+INLINE void stage_rrr_leg1_Z_dynamics(const prepared *m, size_t i, values_rrr_leg1 *v)
 {
-    /* (rrr_leg1-S_ddot) acceleration of the connection point */
-    const real t_ddot_x = A[0*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real rrr_leg1_S_ddot_in_axes2_x = v->axis_x_rrr_leg1_axes2_x*t_ddot_x -
-        v->axis_y_rrr_leg1_axes2_x*t_ddot_y;
-    const real rrr_leg1_S_ddot_in_axes2_y = v->axis_x_rrr_leg1_axes2_x*t_ddot_y +
-        v->axis_y_rrr_leg1_axes2_x*t_ddot_x;
-    /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
-    const real rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x -
-        v->rrr_leg1_bias_in_axes2_x;
-    const real rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y +
-        v->rrr_leg1_W_1_in_axes1_xx*m->rrr_leg1_joint2_offset_x[i]*v->rrr_leg1_s_2;
-    /* (rrr_leg1-B_1) acceleration tensor of link 1 */
-    const real rrr_leg1_B_1_in_axes1_xy = -rrr_leg1_rel_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
+    /* (rrr_leg1-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rrr_leg1_qdd_1_o = -v->rrr_leg1_bias_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
+    /* (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_leg1_alpha_2_o_in_axes2_z = rrr_leg1_qdd_1_o +
+        m->rrr_leg1_w_2_in_axes2_y[i]*(v->rrr_leg1_bias_t -
+        rrr_leg1_qdd_1_o*v->rrr_leg1_r_1_in_axes2_x);
+    /* (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_leg1_mu_2_o_in_axes2_z =
+        v->rrr_leg1_g_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i] -
+        v->rrr_leg1_g_in_axes2_y*m->rrr_leg1_h_2_in_spec2_x[i] +
+        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_o_in_axes2_z;
+    /* (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_leg1_mu_1_o_in_axes1_z = m->rrr_leg1_J_1_in_spec1_zz[i]*rrr_leg1_qdd_1_o -
+        v->rrr_leg1_mu_1_t_3;
+    /* (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at
+       the connection point left out */
+    const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
+        rrr_leg1_mu_2_o_in_axes2_z;
+    /* (rrr_leg1-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_leg1_G_o_in_axes2_y =
+        rrr_leg1_mu_2_o_in_axes2_z*m->rrr_leg1_w_2_in_axes2_y[i];
+    /* (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass
+       at the connection point */
+    const real rrr_leg1_c_o_in_axes2_x = v->rrr_leg1_c_t +
+        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] +
+        v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_N_1_o_in_axes1_z);
+    const real rrr_leg1_c_o_in_axes2_y = v->rrr_leg1_c_t_2 -
+        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_o_in_axes2_y;
+    /* (rrr_leg1-U) velocity and gravity terms of the leg force */
+    v->rrr_leg1_U_x = -v->axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y -
+        v->axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x;
+    v->rrr_leg1_U_y = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
+        v->axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+}
+
+INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t i, values_rrr_leg1 *v)
+{
     /* (rrr_leg1-alpha_2) angular acceleration of link 2 */
-    const real rrr_leg1_alpha_2_in_axes2_z =
-        m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_in_axes2_y +
-        rrr_leg1_B_1_in_axes1_xy*v->rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy;
+    const real rrr_leg1_alpha_2_in_axes2_z = v->rrr_leg1_qdd_2 - v->rrr_leg1_qdd_1_t;
     /* (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_leg1_acc_2_in_axes2_x = v->axis_y_rrr_leg1_axes2_x*m->gravity_y -
-        v->axis_x_rrr_leg1_axes2_x*m->gravity_x + rrr_leg1_S_ddot_in_axes2_x;
-    const real rrr_leg1_acc_2_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y -
-        v->axis_x_rrr_leg1_axes2_x*m->gravity_y - v->axis_y_rrr_leg1_axes2_x*m->gravity_x;
+    v->rrr_leg1_acc_2_in_axes2_x = v->rrr_leg1_S_ddot_in_axes2_x - v->rrr_leg1_g_in_axes2_x;
+    v->rrr_leg1_acc_2_in_axes2_y = v->rrr_leg1_S_ddot_in_axes2_y - v->rrr_leg1_g_in_axes2_y;
     /* (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
        */
     const real rrr_leg1_mu_2_in_axes2_z =
-        rrr_leg1_acc_2_in_axes2_y*m->rrr_leg1_h_2_in_spec2_x[i] -
-        rrr_leg1_acc_2_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i] +
+        v->rrr_leg1_acc_2_in_axes2_y*m->rrr_leg1_h_2_in_spec2_x[i] -
+        v->rrr_leg1_acc_2_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i] +
         m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_in_axes2_z;
     /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
        */
-    const real rrr_leg1_mu_1_in_axes1_z =
-        m->rrr_leg1_h_1_in_spec1_y[i]*(v->rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
-        m->rrr_leg1_mu_1_t_2[i]*v->rrr_leg1_s_1) -
-        m->rrr_leg1_h_1_in_spec1_x[i]*(v->rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
-        m->rrr_leg1_mu_1_t[i]*v->rrr_leg1_s_1) -
-        rrr_leg1_B_1_in_axes1_xy*m->rrr_leg1_J_1_in_spec1_zz[i];
+    const real rrr_leg1_mu_1_in_axes1_z = -v->rrr_leg1_mu_1_t_3 -
+        m->rrr_leg1_J_1_in_spec1_zz[i]*v->rrr_leg1_qdd_1_t;
     /* (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
        point left out */
     const real rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z;
@@ -1943,16 +2034,12 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t w, size_t i, 
     const real rrr_leg1_G_in_axes2_y = rrr_leg1_mu_2_in_axes2_z*m->rrr_leg1_w_2_in_axes2_y[i];
     /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_leg1_c_in_axes2_x = v->rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_x[i] +
+    v->rrr_leg1_c_in_axes2_x = v->rrr_leg1_c_t +
         rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] +
         v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
         rrr_leg1_N_1_in_axes1_z);
-    const real rrr_leg1_c_in_axes2_y = v->rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_y[i] -
+    v->rrr_leg1_c_in_axes2_y = v->rrr_leg1_c_t_2 -
         rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_in_axes2_y;
-    v->rrr_leg1_acc_2_in_axes2_x = rrr_leg1_acc_2_in_axes2_x;
-    v->rrr_leg1_acc_2_in_axes2_y = rrr_leg1_acc_2_in_axes2_y;
-    v->rrr_leg1_c_in_axes2_x = rrr_leg1_c_in_axes2_x;
-    v->rrr_leg1_c_in_axes2_y = rrr_leg1_c_in_axes2_y;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
@@ -1965,72 +2052,14 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
     stage_rrr_leg1_X(m, w, i, j, X, &v);
     stage_rrr_leg1_V_X(m, w, i, j, V, &v);
     stage_rrr_leg1_M_dynamics(m, i, &v);
-    /* (rrr_leg1-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rrr_leg1_qdd_1_o = -v.rrr_leg1_bias_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x;
-    /* (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rrr_leg1_alpha_2_o_in_axes2_z = rrr_leg1_qdd_1_o +
-        m->rrr_leg1_w_2_in_axes2_y[i]*(v.rrr_leg1_W_1_in_axes1_xx*m->rrr_leg1_joint2_offset_x[i]*v.rrr_leg1_s_2
-        - rrr_leg1_qdd_1_o*v.rrr_leg1_r_1_in_axes2_x);
-    /* (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real rrr_leg1_mu_2_o_in_axes2_z =
-        m->rrr_leg1_h_2_in_spec2_y[i]*(v.axis_x_rrr_leg1_axes2_x*m->gravity_x -
-        v.axis_y_rrr_leg1_axes2_x*m->gravity_y) -
-        m->rrr_leg1_h_2_in_spec2_x[i]*(v.axis_x_rrr_leg1_axes2_x*m->gravity_y +
-        v.axis_y_rrr_leg1_axes2_x*m->gravity_x) +
-        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_o_in_axes2_z;
-    /* (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rrr_leg1_mu_1_o_in_axes1_z =
-        m->rrr_leg1_h_1_in_spec1_y[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
-        m->rrr_leg1_mu_1_t_2[i]*v.rrr_leg1_s_1) -
-        m->rrr_leg1_h_1_in_spec1_x[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
-        m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1) +
-        m->rrr_leg1_J_1_in_spec1_zz[i]*rrr_leg1_qdd_1_o;
-    /* (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at
-       the connection point left out */
-    const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
-        rrr_leg1_mu_2_o_in_axes2_z;
-    /* (rrr_leg1-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rrr_leg1_G_o_in_axes2_y =
-        rrr_leg1_mu_2_o_in_axes2_z*m->rrr_leg1_w_2_in_axes2_y[i];
-    /* (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass
-       at the connection point */
-    const real rrr_leg1_c_o_in_axes2_x = v.rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_x[i] +
-        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] +
-        v.rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v.rrr_leg1_r_1_in_axes2_x -
-        rrr_leg1_N_1_o_in_axes1_z);
-    const real rrr_leg1_c_o_in_axes2_y = v.rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_y[i] -
-        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_o_in_axes2_y;
-    /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_leg1_Q_t = m->rrr_leg1_h_2_in_spec2_y[i]*(v.rrr_leg1_w_1_in_axes2_x +
-        v.rrr_leg1_w_2_in_axes2_x) - m->rrr_leg1_d_c_in_axes2_yy[i] -
-        v.rrr_leg1_d_Gamma_1_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x -
-        v.rrr_leg1_d_Gamma_2_in_axes2_x*v.rrr_leg1_w_2_in_axes2_x;
-    const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
-    const real rrr_leg1_Q_t_3 = v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy +
-        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2;
-    const real rrr_leg1_Q_t_4 = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 -
-        v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
-    const real rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
-        2*v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
-    const real rrr_leg1_Q_xy = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
-        v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
-    const real rrr_leg1_Q_yy = -m->rrr_leg1_d_c_in_axes2_yy[i] -
-        2*v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
-    /* (rrr_leg1-U) velocity and gravity terms of the leg force */
-    const real rrr_leg1_U_x = -v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y -
-        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x;
-    const real rrr_leg1_U_y = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
-        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+    stage_rrr_leg1_Z_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rrr_leg1_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_leg1_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[3*count + k], add, rrr_leg1_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[4*count + k], add, rrr_leg1_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[3*count + k], add, v.rrr_leg1_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[4*count + k], add, v.rrr_leg1_U_y);  /* Z_t_y_of_legs */
     /* (rrr_leg1-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_leg1_w_1_x;
     o[1*count + k] = v.rrr_leg1_w_1_y;
@@ -2046,7 +2075,7 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
 }
 
 INLINE void dynamics_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
-    real *H, verdict *t)
+    real *H, status_flags *t)
 {
     H[0*w + k] = o[0*count + at];
     H[NU*w + k] = o[1*count + at];
@@ -2064,63 +2093,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_X(m, w, i, j, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (rrr-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rrr_qdd_1_o = -v.rrr_bias_in_axes2_x*v.rrr_w_1_in_axes2_x;
-    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rrr_alpha_2_o_in_axes2_z = rrr_qdd_1_o +
-        m->rrr_w_2_in_axes2_y[i]*(v.rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v.rrr_s_2 -
-        rrr_qdd_1_o*v.rrr_r_1_in_axes2_x);
-    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real rrr_mu_2_o_in_axes2_z =
-        m->rrr_h_2_in_spec2_y[i]*(v.axis_x_rrr_axes2_x*m->gravity_x -
-        v.axis_y_rrr_axes2_x*m->gravity_y) -
-        m->rrr_h_2_in_spec2_x[i]*(v.axis_x_rrr_axes2_x*m->gravity_y +
-        v.axis_y_rrr_axes2_x*m->gravity_x) +
-        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
-    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
-        - m->rrr_mu_1_t[i]*v.rrr_s_1) + m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o;
-    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
-        v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
-        v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
-        v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
-        v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
-    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
-        v.axis_x_rrr_axes2_x*rrr_Q_t_2;
-    const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
-        v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
-    const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
-    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
-    /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
-        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
-    const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    stage_rrr_Z_dynamics(m, i, &v);
     /* (M_tt) */
-    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
     /* (Z_t) */
-    gather(&terms[3*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[4*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[3*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[4*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
     /* (rrr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_w_1_x;
     o[1*count + k] = v.rrr_w_1_y;
@@ -2131,7 +2111,7 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void dynamics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[2*w + k] = o[0*count + at];
     H[(NU + 2)*w + k] = o[1*count + at];
@@ -2141,7 +2121,7 @@ INLINE void dynamics_place_rrr(size_t w, size_t k, size_t at, size_t count, cons
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
-    *Z, verdict *t)
+    *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2166,7 +2146,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     real sums[5] = {0};
     real terms_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[7*LEGS(LEGS_OF_rrr_leg1)] = {0};
@@ -2195,7 +2175,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
     real sums[5*LANES];
     real o_rrr_leg1[7*LANES];
@@ -2229,39 +2209,17 @@ INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
     stage_rrr_leg1_M_dynamics(m, i, &v);
-    /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_leg1_Q_t = v.rrr_leg1_c_2*v.rrr_leg1_s_1 + v.rrr_leg1_c_1*v.rrr_leg1_s_2;
-    const real rrr_leg1_Q_t_2 = v.rrr_leg1_c_1*v.rrr_leg1_c_2 - v.rrr_leg1_s_1*v.rrr_leg1_s_2;
-    const real axis_y_rrr_leg1_axes2_x = rrr_leg1_Q_t_2*m->rrr_leg1_base_frame_xy[i] -
-        rrr_leg1_Q_t*m->rrr_leg1_base_frame_xx[i];
-    const real axis_x_rrr_leg1_axes2_x = rrr_leg1_Q_t_2*m->rrr_leg1_base_frame_yy[i] -
-        rrr_leg1_Q_t*m->rrr_leg1_base_frame_yx[i];
-    const real rrr_leg1_Q_t_3 = m->rrr_leg1_h_2_in_spec2_y[i]*(v.rrr_leg1_w_1_in_axes2_x +
-        v.rrr_leg1_w_2_in_axes2_x) - m->rrr_leg1_d_c_in_axes2_yy[i] -
-        v.rrr_leg1_d_Gamma_1_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x -
-        v.rrr_leg1_d_Gamma_2_in_axes2_x*v.rrr_leg1_w_2_in_axes2_x;
-    const real rrr_leg1_Q_t_4 = R(0.5)*rrr_leg1_Q_t_3;
-    const real rrr_leg1_Q_t_5 = axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy +
-        axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
-    const real rrr_leg1_Q_t_6 = axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 -
-        axis_x_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
-    const real rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
-        2*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_5;
-    const real rrr_leg1_Q_xy = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_6 +
-        axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_5;
-    const real rrr_leg1_Q_yy = -m->rrr_leg1_d_c_in_axes2_yy[i] -
-        2*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_6;
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rrr_leg1_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_leg1_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
     o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -2273,41 +2231,23 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
-    const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
-    const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
-        rrr_Q_t*m->rrr_base_frame_xx[i];
-    const real axis_x_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_yy[i] -
-        rrr_Q_t*m->rrr_base_frame_yx[i];
-    const real rrr_Q_t_3 = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
-        v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
-        v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
-        v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
-    const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-    const real rrr_Q_t_5 = axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
-        axis_x_rrr_axes2_x*rrr_Q_t_4;
-    const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
-        axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
-    const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
-    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
     /* (M_tt) */
-    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, verdict *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
+    *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2323,7 +2263,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real sums[3] = {0};
     real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
@@ -2351,7 +2291,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     M_after(m, 1, 0, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
     real sums[3*LANES];
     real o_rrr_leg1[2*LANES];
@@ -2384,80 +2325,18 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
 {
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
-    /* (rrr_leg1-qd_1) rate of joint 1 */
-    const real axis_y_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_xy[i]*v.rrr_leg1_qd_1_t_2 -
-        m->rrr_leg1_base_frame_xx[i]*v.rrr_leg1_qd_1_t;
-    const real axis_x_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_yy[i]*v.rrr_leg1_qd_1_t_2 -
-        m->rrr_leg1_base_frame_yx[i]*v.rrr_leg1_qd_1_t;
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real rrr_leg1_qd_1 = v.rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
-        axis_y_rrr_leg1_axes2_x*t_dot_y);
-    /* (rrr_leg1-W_1) centripetal tensor of link 1 */
-    const real rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1;
-    /* (rrr_leg1-omega_2) angular velocity of link 2 */
-    const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
-        m->rrr_leg1_w_2_in_axes2_y[i]*(axis_x_rrr_leg1_axes2_x*t_dot_y +
-        axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*v.rrr_leg1_r_1_in_axes2_x);
-    /* (rrr_leg1-W_2) centripetal tensor of link 2 */
-    const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
-    /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_leg1_bias_in_axes2_x =
-        rrr_leg1_W_1_in_axes1_xx*v.rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i] -
-        rrr_leg1_W_2_t*m->rrr_leg1_platform_joint_offset_x[i];
-    /* (rrr_leg1-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rrr_leg1_qdd_1_o = -rrr_leg1_bias_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x;
-    /* (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rrr_leg1_alpha_2_o_in_axes2_z = rrr_leg1_qdd_1_o +
-        m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_W_1_in_axes1_xx*m->rrr_leg1_joint2_offset_x[i]*v.rrr_leg1_s_2
-        - rrr_leg1_qdd_1_o*v.rrr_leg1_r_1_in_axes2_x);
-    /* (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real rrr_leg1_mu_2_o_in_axes2_z =
-        m->rrr_leg1_h_2_in_spec2_y[i]*(axis_x_rrr_leg1_axes2_x*m->gravity_x -
-        axis_y_rrr_leg1_axes2_x*m->gravity_y) -
-        m->rrr_leg1_h_2_in_spec2_x[i]*(axis_x_rrr_leg1_axes2_x*m->gravity_y +
-        axis_y_rrr_leg1_axes2_x*m->gravity_x) +
-        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_o_in_axes2_z;
-    /* (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rrr_leg1_mu_1_o_in_axes1_z =
-        m->rrr_leg1_h_1_in_spec1_y[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
-        m->rrr_leg1_mu_1_t_2[i]*v.rrr_leg1_s_1) -
-        m->rrr_leg1_h_1_in_spec1_x[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
-        m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1) +
-        m->rrr_leg1_J_1_in_spec1_zz[i]*rrr_leg1_qdd_1_o;
-    /* (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at
-       the connection point left out */
-    const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
-        rrr_leg1_mu_2_o_in_axes2_z;
-    /* (rrr_leg1-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rrr_leg1_G_o_in_axes2_y =
-        rrr_leg1_mu_2_o_in_axes2_z*m->rrr_leg1_w_2_in_axes2_y[i];
-    /* (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass
-       at the connection point */
-    const real rrr_leg1_c_o_in_axes2_x = rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_x[i] +
-        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] +
-        v.rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v.rrr_leg1_r_1_in_axes2_x -
-        rrr_leg1_N_1_o_in_axes1_z);
-    const real rrr_leg1_c_o_in_axes2_y = rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_y[i] -
-        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_o_in_axes2_y;
-    /* (rrr_leg1-U) velocity and gravity terms of the leg force */
-    const real rrr_leg1_U_x = -axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y -
-        axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x;
-    const real rrr_leg1_U_y = axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
-        axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+    stage_rrr_leg1_V_X(m, w, i, j, V, &v);
+    stage_rrr_leg1_Z_dynamics(m, i, &v);
     /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, rrr_leg1_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, rrr_leg1_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_leg1_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_leg1_U_y);  /* Z_t_y_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
     o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -2468,77 +2347,24 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
-    /* (rrr-qd_1) rate of joint 1 */
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x -
-        axis_y_rrr_axes2_x*t_dot_y);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1;
-    /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-        rrr_qd_1*v.rrr_r_1_in_axes2_x);
-    /* (rrr-W_2) centripetal tensor of link 2 */
-    const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
-    /* (rrr-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rrr_qdd_1_o = -rrr_bias_in_axes2_x*v.rrr_w_1_in_axes2_x;
-    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rrr_alpha_2_o_in_axes2_z = rrr_qdd_1_o +
-        m->rrr_w_2_in_axes2_y[i]*(rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v.rrr_s_2 -
-        rrr_qdd_1_o*v.rrr_r_1_in_axes2_x);
-    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real rrr_mu_2_o_in_axes2_z =
-        m->rrr_h_2_in_spec2_y[i]*(axis_x_rrr_axes2_x*m->gravity_x -
-        axis_y_rrr_axes2_x*m->gravity_y) -
-        m->rrr_h_2_in_spec2_x[i]*(axis_x_rrr_axes2_x*m->gravity_y +
-        axis_y_rrr_axes2_x*m->gravity_x) + m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
-    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
-        - m->rrr_mu_1_t[i]*v.rrr_s_1) + m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o;
-    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rrr_c_o_in_axes2_x = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
-        v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
-    /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
-        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
-    const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_Z_dynamics(m, i, &v);
     /* (Z_t) */
-    gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
+    *t)
 {
     /* (Z_t) */
     const real Z_t_x_of_legs = sums[0*w + k];
@@ -2551,7 +2377,7 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += Z_t_x + Z_t_y;
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
     real sums[2] = {0};
     real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
@@ -2579,8 +2405,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(m, 1, 0, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
     real sums[2*LANES];
     real o_rrr_leg1[2*LANES];
@@ -2613,22 +2439,14 @@ INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
 {
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
-    /* (rrr_leg1-w_2) reciprocal vector 2 */
-    const real rrr_leg1_w_2_in_axes2_x =
-        -v.rrr_leg1_w_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i]*(v.rrr_leg1_c_2*v.rrr_leg1_r_1_in_axes1_x
-        + v.rrr_leg1_r_1_in_axes1_y*v.rrr_leg1_s_2);
-    const real rrr_leg1_w_2_x = v.axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] +
-        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
-    const real rrr_leg1_w_2_y = v.axis_x_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] -
-        v.axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     /* (rrr_leg1-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_leg1_w_1_x;
     o[1*count + k] = v.rrr_leg1_w_1_y;
-    /* (rrr_leg1-w_2) */
-    o[2*count + k] = rrr_leg1_w_2_x;
-    o[3*count + k] = rrr_leg1_w_2_y;
-    o[6*count + k] = (v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (rrr_leg1_w_2_x +
-        rrr_leg1_w_2_y);
+    /* (rrr_leg1-w_2) reciprocal vector 2 */
+    o[2*count + k] = v.rrr_leg1_w_2_x;
+    o[3*count + k] = v.rrr_leg1_w_2_y;
+    o[6*count + k] = (v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (v.rrr_leg1_w_2_x +
+        v.rrr_leg1_w_2_y);
     o[5*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
@@ -2636,7 +2454,7 @@ INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
 }
 
 INLINE void H_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    verdict *t)
+    status_flags *t)
 {
     H[0*w + k] = o[0*count + at];
     H[NU*w + k] = o[1*count + at];
@@ -2652,7 +2470,6 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
-    stage_rrr_H_condition(m, i, &v);
     /* (rrr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_w_1_x;
     o[1*count + k] = v.rrr_w_1_y;
@@ -2663,7 +2480,7 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 }
 
 INLINE void H_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    verdict *t)
+    status_flags *t)
 {
     H[2*w + k] = o[0*count + at];
     H[(NU + 2)*w + k] = o[1*count + at];
@@ -2672,7 +2489,7 @@ INLINE void H_place_rrr(size_t w, size_t k, size_t at, size_t count, const real 
     t->total[k] += o[4*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real o_rrr_leg1[7*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
@@ -2690,7 +2507,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
     real o_rrr_leg1[7*LANES];
     real o_rrr[5*LANES];
@@ -2732,8 +2550,10 @@ INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
 {
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
+    stage_rrr_leg1_A_X(w, j, A, &v);
     stage_rrr_leg1_V_X(m, w, i, j, V, &v);
-    stage_rrr_leg1_legs_required(m, w, i, j, A, &v);
+    stage_rrr_leg1_A_V_X(m, i, &v);
+    stage_rrr_leg1_legs_required(m, i, &v);
     /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real rrr_leg1_c_x = v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y +
@@ -2756,7 +2576,7 @@ INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
 }
 
 INLINE void required_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
-    real *H, verdict *t)
+    real *H, status_flags *t)
 {
     H[0*w + k] = o[0*count + at];
     H[NU*w + k] = o[1*count + at];
@@ -2771,8 +2591,10 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
+    stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_legs_required(m, w, i, j, A, &v);
+    stage_rrr_A_V_X(m, i, &v);
+    stage_rrr_legs_required(m, i, &v);
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real rrr_c_x = v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y +
@@ -2791,7 +2613,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[2*w + k] = o[0*count + at];
     H[(NU + 2)*w + k] = o[1*count + at];
@@ -2814,7 +2636,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
     real s[2] = {0}, sums[2] = {0};
     real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[6*LEGS(LEGS_OF_rrr_leg1)] = {0};
@@ -2850,14 +2672,9 @@ INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
     /* (rrr_leg1-q_1) displacement of joint 1 */
-    const real rrr_leg1_q_1 = angle(v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kd_1*v.rrr_leg1_Ks_1 +
-        v.rrr_leg1_Kc_1*v.rrr_leg1_root_1),
-        v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_Kd_1 -
-        v.rrr_leg1_Ks_1*v.rrr_leg1_root_1));
+    const real rrr_leg1_q_1 = angle(v.rrr_leg1_s_1, v.rrr_leg1_c_1);
     /* (rrr_leg1-q_2) displacement of joint 2 */
-    const real rrr_leg1_q_2 =
-        angle(-m->inv_rrr_leg1_size_t[i]*m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_joint2_offset_x[i]*m->rrr_leg1_platform_joint_offset_x[i]*v.rrr_leg1_root_1,
-        m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_platform_joint_offset_x[i]*v.rrr_leg1_x_2_in_axes1_x);
+    const real rrr_leg1_q_2 = angle(v.rrr_leg1_s_2, v.rrr_leg1_c_2);
     /* (rrr_leg1-q_1) */
     o[0*count + k] = rrr_leg1_q_1;
     /* (rrr_leg1-q_2) */
@@ -2869,7 +2686,7 @@ INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t
 }
 
 INLINE void inverse_kinematics_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const
-    real *o, real *q, verdict *t)
+    real *o, real *q, status_flags *t)
 {
     q[0*w + k] = o[0*count + at];
     q[1*w + k] = o[1*count + at];
@@ -2884,13 +2701,9 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     /* (rrr-q_1) displacement of joint 1 */
-    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 +
-        v.rrr_Kc_1*v.rrr_root_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
-        v.rrr_Ks_1*v.rrr_root_1));
+    const real rrr_q_1 = angle(v.rrr_s_1, v.rrr_c_1);
     /* (rrr-q_2) displacement of joint 2 */
-    const real rrr_q_2 =
-        angle(-m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1,
-        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x);
+    const real rrr_q_2 = angle(v.rrr_s_2, v.rrr_c_2);
     /* (rrr-q_1) */
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
@@ -2901,7 +2714,7 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
 }
 
 INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *q, verdict *t)
+    *o, real *q, status_flags *t)
 {
     q[2*w + k] = o[0*count + at];
     q[3*w + k] = o[1*count + at];
@@ -2910,7 +2723,7 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t c
     t->total[k] += o[4*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
@@ -2929,7 +2742,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
     real o_rrr_leg1[5*LANES];
     real o_rrr[5*LANES];
@@ -2957,25 +2770,12 @@ INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t i, siz
 {
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
+    stage_rrr_leg1_V_X(m, w, i, j, V, &v);
     /* (rrr_leg1-qd_1) rate of joint 1 */
-    const real axis_y_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_xy[i]*v.rrr_leg1_qd_1_t_2 -
-        m->rrr_leg1_base_frame_xx[i]*v.rrr_leg1_qd_1_t;
-    const real axis_x_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_yy[i]*v.rrr_leg1_qd_1_t_2 -
-        m->rrr_leg1_base_frame_yx[i]*v.rrr_leg1_qd_1_t;
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real rrr_leg1_qd_1 = -(axis_x_rrr_leg1_axes2_x*t_dot_x -
-        axis_y_rrr_leg1_axes2_x*t_dot_y)/v.rrr_leg1_r_1_in_axes2_y;
+    o[0*count + k] = v.rrr_leg1_qd_1;
     /* (rrr_leg1-qd_2) rate of joint 2 */
-    const real rrr_leg1_qd_2 = m->rrr_leg1_w_2_in_axes2_y[i]*(axis_x_rrr_leg1_axes2_x*t_dot_y
-        + axis_y_rrr_leg1_axes2_x*t_dot_x -
-        rrr_leg1_qd_1*(v.rrr_leg1_c_2*v.rrr_leg1_r_1_in_axes1_x +
-        v.rrr_leg1_r_1_in_axes1_y*v.rrr_leg1_s_2));
-    /* (rrr_leg1-qd_1) */
-    o[0*count + k] = rrr_leg1_qd_1;
-    /* (rrr_leg1-qd_2) */
-    o[1*count + k] = rrr_leg1_qd_2;
-    o[4*count + k] = rrr_leg1_qd_1 + rrr_leg1_qd_2;
+    o[1*count + k] = v.rrr_leg1_qd_2;
+    o[4*count + k] = v.rrr_leg1_qd_1 + v.rrr_leg1_qd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
@@ -2983,7 +2783,7 @@ INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t i, siz
 }
 
 INLINE void joint_rates_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
-    real *qd, verdict *t)
+    real *qd, status_flags *t)
 {
     qd[0*w + k] = o[0*count + at];
     qd[1*w + k] = o[1*count + at];
@@ -2997,31 +2797,19 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
     /* (rrr-qd_1) rate of joint 1 */
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real rrr_qd_1 = -(axis_x_rrr_axes2_x*t_dot_x -
-        axis_y_rrr_axes2_x*t_dot_y)/v.rrr_r_1_in_axes2_y;
+    o[0*count + k] = v.rrr_qd_1;
     /* (rrr-qd_2) rate of joint 2 */
-    const real rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*t_dot_y +
-        axis_y_rrr_axes2_x*t_dot_x - rrr_qd_1*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
-        v.rrr_r_1_in_axes1_y*v.rrr_s_2));
-    /* (rrr-qd_1) */
-    o[0*count + k] = rrr_qd_1;
-    /* (rrr-qd_2) */
-    o[1*count + k] = rrr_qd_2;
-    o[4*count + k] = rrr_qd_1 + rrr_qd_2;
+    o[1*count + k] = v.rrr_qd_2;
+    o[4*count + k] = v.rrr_qd_1 + v.rrr_qd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *qd, verdict *t)
+    *qd, status_flags *t)
 {
     qd[2*w + k] = o[0*count + at];
     qd[3*w + k] = o[1*count + at];
@@ -3030,7 +2818,8 @@ INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, c
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
@@ -3049,7 +2838,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
     real o_rrr_leg1[5*LANES];
     real o_rrr[5*LANES];
@@ -3077,43 +2866,14 @@ INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_
 {
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
-    /* (rrr_leg1-qd_1) rate of joint 1 */
-    const real axis_y_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_xy[i]*v.rrr_leg1_qd_1_t_2 -
-        m->rrr_leg1_base_frame_xx[i]*v.rrr_leg1_qd_1_t;
-    const real axis_x_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_yy[i]*v.rrr_leg1_qd_1_t_2 -
-        m->rrr_leg1_base_frame_yx[i]*v.rrr_leg1_qd_1_t;
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real rrr_leg1_qd_1 = v.rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
-        axis_y_rrr_leg1_axes2_x*t_dot_y);
-    /* (rrr_leg1-W_1) centripetal tensor of link 1 */
-    const real rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1;
-    /* (rrr_leg1-omega_2) angular velocity of link 2 */
-    const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
-        m->rrr_leg1_w_2_in_axes2_y[i]*(axis_x_rrr_leg1_axes2_x*t_dot_y +
-        axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*v.rrr_leg1_r_1_in_axes2_x);
-    /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_leg1_bias_in_axes2_x =
-        rrr_leg1_W_1_in_axes1_xx*v.rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i] -
-        rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*m->rrr_leg1_platform_joint_offset_x[i];
-    /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
-    const real t_ddot_x = A[0*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real rrr_leg1_rel_in_axes2_x = axis_x_rrr_leg1_axes2_x*t_ddot_x -
-        axis_y_rrr_leg1_axes2_x*t_ddot_y - rrr_leg1_bias_in_axes2_x;
-    const real rrr_leg1_rel_in_axes2_y = axis_x_rrr_leg1_axes2_x*t_ddot_y +
-        axis_y_rrr_leg1_axes2_x*t_ddot_x +
-        rrr_leg1_W_1_in_axes1_xx*m->rrr_leg1_joint2_offset_x[i]*v.rrr_leg1_s_2;
+    stage_rrr_leg1_A_X(w, j, A, &v);
+    stage_rrr_leg1_V_X(m, w, i, j, V, &v);
+    stage_rrr_leg1_A_V_X(m, i, &v);
     /* (rrr_leg1-qdd_1) acceleration of joint 1 */
-    const real rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x;
+    o[0*count + k] = -v.rrr_leg1_qdd_1_t;
     /* (rrr_leg1-qdd_2) acceleration of joint 2 */
-    const real rrr_leg1_qdd_2 = m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_in_axes2_y +
-        rrr_leg1_qdd_1_t*v.rrr_leg1_r_1_in_axes2_x);
-    /* (rrr_leg1-qdd_1) */
-    o[0*count + k] = -rrr_leg1_qdd_1_t;
-    /* (rrr_leg1-qdd_2) */
-    o[1*count + k] = rrr_leg1_qdd_2;
-    o[4*count + k] = rrr_leg1_qdd_1_t + rrr_leg1_qdd_2;
+    o[1*count + k] = v.rrr_leg1_qdd_2;
+    o[4*count + k] = v.rrr_leg1_qdd_1_t + v.rrr_leg1_qdd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
@@ -3121,7 +2881,7 @@ INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_
 }
 
 INLINE void joint_accelerations_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const
-    real *o, real *qdd, verdict *t)
+    real *o, real *qdd, status_flags *t)
 {
     qdd[0*w + k] = o[0*count + at];
     qdd[1*w + k] = o[1*count + at];
@@ -3135,48 +2895,21 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
-    /* (rrr-qd_1) rate of joint 1 */
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x -
-        axis_y_rrr_axes2_x*t_dot_y);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1;
-    /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-        rrr_qd_1*v.rrr_r_1_in_axes2_x);
-    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
-    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real t_ddot_x = A[0*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
-        - rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
-        + rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    stage_rrr_A_X(w, j, A, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_A_V_X(m, i, &v);
     /* (rrr-qdd_1) acceleration of joint 1 */
-    const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*v.rrr_w_1_in_axes2_x;
+    o[0*count + k] = -v.rrr_qdd_1_t;
     /* (rrr-qdd_2) acceleration of joint 2 */
-    const real rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
-        rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
-    /* (rrr-qdd_1) */
-    o[0*count + k] = -rrr_qdd_1_t;
-    /* (rrr-qdd_2) */
-    o[1*count + k] = rrr_qdd_2;
-    o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
+    o[1*count + k] = v.rrr_qdd_2;
+    o[4*count + k] = v.rrr_qdd_1_t + v.rrr_qdd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *qdd, verdict *t)
+    *o, real *qdd, status_flags *t)
 {
     qdd[2*w + k] = o[0*count + at];
     qdd[3*w + k] = o[1*count + at];
@@ -3186,7 +2919,7 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t 
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
@@ -3205,7 +2938,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
     real o_rrr_leg1[5*LANES];
     real o_rrr[5*LANES];
@@ -3233,8 +2966,10 @@ INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
+    stage_rrr_leg1_A_X(w, j, A, &v);
     stage_rrr_leg1_V_X(m, w, i, j, V, &v);
-    stage_rrr_leg1_legs_required(m, w, i, j, A, &v);
+    stage_rrr_leg1_A_V_X(m, i, &v);
+    stage_rrr_leg1_legs_required(m, i, &v);
     /* (rrr_leg1-c_true) leg force on the platform without actuation, the last link's mass included */
     const real rrr_leg1_c_true_in_axes2_x = v.rrr_leg1_c_in_axes2_x -
         v.rrr_leg1_acc_2_in_axes2_x*m->rrr_leg1_link2_mass[i];
@@ -3260,7 +2995,7 @@ INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void legs_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     leg_force[0*w + k] = o[0*count + at];
     leg_force[1*w + k] = o[1*count + at];
@@ -3277,8 +3012,10 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
+    stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_legs_required(m, w, i, j, A, &v);
+    stage_rrr_A_V_X(m, i, &v);
+    stage_rrr_legs_required(m, i, &v);
     /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
     const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
         v.rrr_acc_2_in_axes2_x*m->rrr_link2_mass[i];
@@ -3300,7 +3037,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     leg_force[3*w + k] = o[0*count + at];
     leg_force[(3 + 1)*w + k] = o[1*count + at];
@@ -3311,7 +3048,7 @@ INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const re
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     real o_rrr_leg1[8*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
@@ -3348,14 +3085,12 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
     /* (potential) */
-    const real rrr_leg1_potential_t_3 = (v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
-        m->rrr_leg1_mu_1_t_2[i]*v.rrr_leg1_s_1)*(m->rrr_leg1_h_1_in_spec1_x[i] +
-        v.rrr_leg1_c_2*m->rrr_leg1_h_2_in_spec2_x[i] +
+    const real rrr_leg1_potential_t_3 = v.rrr_leg1_g_in_axes1_x*(m->rrr_leg1_h_1_in_spec1_x[i]
+        + v.rrr_leg1_c_2*m->rrr_leg1_h_2_in_spec2_x[i] +
         m->rrr_leg1_link1_mass[i]*(v.rrr_leg1_c_1*m->rrr_leg1_potential_t[i] +
         m->rrr_leg1_potential_t_2[i]*v.rrr_leg1_s_1) -
         m->rrr_leg1_h_2_in_spec2_y[i]*v.rrr_leg1_s_2) +
-        (v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
-        m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1)*(m->rrr_leg1_h_1_in_spec1_y[i] +
+        v.rrr_leg1_g_in_axes1_y*(m->rrr_leg1_h_1_in_spec1_y[i] +
         v.rrr_leg1_c_2*m->rrr_leg1_h_2_in_spec2_y[i] +
         m->rrr_leg1_link1_mass[i]*(v.rrr_leg1_c_1*m->rrr_leg1_potential_t_2[i] -
         m->rrr_leg1_potential_t[i]*v.rrr_leg1_s_1) +
@@ -3367,7 +3102,8 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
     o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void potential_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o,
+    status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -3379,13 +3115,11 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     /* (potential) */
-    const real rrr_potential_t_3 = (v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1)*(m->rrr_h_1_in_spec1_x[i] +
+    const real rrr_potential_t_3 = v.rrr_g_in_axes1_x*(m->rrr_h_1_in_spec1_x[i] +
         v.rrr_c_2*m->rrr_h_2_in_spec2_x[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
         m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
-        (v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1)*(m->rrr_h_1_in_spec1_y[i]
-        + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
+        v.rrr_g_in_axes1_y*(m->rrr_h_1_in_spec1_y[i] + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
         m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
     /* (potential) */
@@ -3394,7 +3128,7 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -3411,7 +3145,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
     real s[1] = {0}, sums[2] = {0};
     real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
@@ -3441,7 +3175,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, status_flags
+    *t)
 {
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
@@ -3453,14 +3188,6 @@ INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
 {
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
-    /* (rrr_leg1-w_2) reciprocal vector 2 */
-    const real rrr_leg1_w_2_in_axes2_x =
-        -v.rrr_leg1_w_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i]*(v.rrr_leg1_c_2*v.rrr_leg1_r_1_in_axes1_x
-        + v.rrr_leg1_r_1_in_axes1_y*v.rrr_leg1_s_2);
-    const real rrr_leg1_w_2_x = v.axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] +
-        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
-    const real rrr_leg1_w_2_y = v.axis_x_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] -
-        v.axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real rrr_leg1_pivot_size = magnitude(v.rrr_leg1_rho2_1);
@@ -3478,14 +3205,14 @@ INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
     /* (rrr_leg1-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_leg1_w_1_x;
     o[1*count + k] = v.rrr_leg1_w_1_y;
-    /* (rrr_leg1-w_2) */
-    o[2*count + k] = rrr_leg1_w_2_x;
-    o[3*count + k] = rrr_leg1_w_2_y;
+    /* (rrr_leg1-w_2) reciprocal vector 2 */
+    o[2*count + k] = v.rrr_leg1_w_2_x;
+    o[3*count + k] = v.rrr_leg1_w_2_y;
     /* (rrr_leg1-G) */
     o[4*count + k] = rrr_leg1_least_pivots;
     o[5*count + k] = v.rrr_leg1_disc_1;
-    o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + rrr_leg1_w_2_x)) +
-        (rrr_leg1_w_2_y + (rrr_leg1_least_pivots + v.rrr_leg1_disc_1));
+    o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_w_2_x)) +
+        (v.rrr_leg1_w_2_y + (rrr_leg1_least_pivots + v.rrr_leg1_disc_1));
     o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
@@ -3493,7 +3220,7 @@ INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
 }
 
 INLINE void condition_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
-    real *H, real *pivots, real *reach, verdict *t)
+    real *H, real *pivots, real *reach, status_flags *t)
 {
     H[0*w + k] = o[0*count + at];
     H[NU*w + k] = o[1*count + at];
@@ -3511,7 +3238,6 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
-    stage_rrr_H_condition(m, i, &v);
     /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
@@ -3537,7 +3263,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, real *pivots, real *reach, verdict *t)
+    *H, real *pivots, real *reach, status_flags *t)
 {
     H[2*w + k] = o[0*count + at];
     H[(NU + 2)*w + k] = o[1*count + at];
@@ -3548,7 +3274,7 @@ INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, con
     t->total[k] += o[6*count + at];
 }
 
-INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, verdict *t)
+INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_rrr = sums[1*w + k];
@@ -3560,7 +3286,7 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
     real sums[2] = {0};
     real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] = {0};
@@ -3593,196 +3319,179 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int fivebar_redundant_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int fivebar_redundant_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int fivebar_redundant_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int fivebar_redundant_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int fivebar_redundant_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int fivebar_redundant_joint_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int fivebar_redundant_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 static int inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
@@ -3792,14 +3501,9 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
     static const real no_weights[NU] = {1, 1, 1};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, inverse_root_1[NU] = {0},
         scale_columns_1[NV*NU] = {0}, least_norm_1[NU] = {0}, tau[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     require_positive(NU, 1, weights, why.invalid);
     weights = optional(NU, weights, no_weights, why.invalid);
@@ -3817,9 +3521,7 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
     for (size_t i = 0; i < NU; ++i) {
         tau[i] = inverse_root_1[i]*least_norm_1[i];
     }
-    check(NU, 1, tau, why.overflow);
-    copy(NU, tau, tau_out);
-    return settled(&why, NU, tau_out);
+    return finished(NU, tau, tau_out, &why);
 }
 
 INLINE void eliminate_2(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -3858,14 +3560,9 @@ int fivebar_redundant_forward_dynamics(const prepared *m, const real *X, const r
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
         subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -3884,7 +3581,7 @@ int fivebar_redundant_forward_dynamics(const prepared *m, const real *X, const r
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -3893,7 +3590,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
         A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3908,8 +3605,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_2(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int fivebar_redundant_complete_acceleration(const prepared *m, const real *X, const real *V, const
@@ -3919,13 +3616,11 @@ int fivebar_redundant_complete_acceleration(const prepared *m, const real *X, co
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int fivebar_redundant_leg_reactions(const prepared *m, const real *X, const real *V, const real
@@ -3935,14 +3630,9 @@ int fivebar_redundant_leg_reactions(const prepared *m, const real *X, const real
     static const size_t places_forces[] = {0, 0, 1};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] = {0},
         leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -3954,22 +3644,16 @@ int fivebar_redundant_leg_reactions(const prepared *m, const real *X, const real
         forces[i] = leg_force[i];
     }
     add_forces(NU, 3, 1, places_forces, least_norm_1, actuator, forces);
-    check(NL*NU, 1, forces, why.overflow);
-    copy(NL*NU, forces, forces_out);
-    return settled(&why, NL*NU, forces_out);
+    return finished(NL*NU, forces, forces_out, &why);
 }
 
 int fivebar_redundant_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
     real *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -3978,29 +3662,27 @@ int fivebar_redundant_energy(const prepared *m, const real *X, const real *V, re
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int fivebar_redundant_null_space(const prepared *m, const real *X, real *basis_out)
 {
     real H[NV*NU] = {0}, basis[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H, &why);
     null_basis(NV, NU, NV, H, basis);
-    check(NU, 1, basis, why.overflow);
-    copy(NU, basis, basis_out);
-    return settled(&why, NU, basis_out);
+    return finished(NU, basis, basis_out, &why);
 }
 
 int fivebar_redundant_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, reach[NL] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, legs_out, reach, &why);
     singular_values(NV, NU, H, sigma);
     if (!is_finite(why.total[0])) {
@@ -4010,8 +3692,8 @@ int fivebar_redundant_condition(const prepared *m, const real *X, real *sigma_ou
     check(2, 1, lengths, why.overflow);
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int fivebar_redundant_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4019,9 +3701,9 @@ int fivebar_redundant_manipulability(const prepared *m, const real *X, real *mea
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
         {0}, measure[1] = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
     singular_values(NV, NU, H, singular_values_1);
     spread(NV, singular_values_1, measure, isotropy);
@@ -4032,8 +3714,8 @@ int fivebar_redundant_manipulability(const prepared *m, const real *X, real *mea
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int fivebar_redundant_singularity_distance(const prepared *m, const real *X, real *actuators_out,
@@ -4041,9 +3723,9 @@ int fivebar_redundant_singularity_distance(const prepared *m, const real *X, rea
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
         {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
     singular_values(NV, NU, H, singular_values_1);
     spread(NV, singular_values_1, spread_1, actuators);
@@ -4054,8 +3736,8 @@ int fivebar_redundant_singularity_distance(const prepared *m, const real *X, rea
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
 int fivebar_redundant_force_distribution(const prepared *m, const real *X, const real *V, const
@@ -4067,17 +3749,10 @@ int fivebar_redundant_force_distribution(const prepared *m, const real *X, const
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] = {0},
         null_basis_1[NU] = {0}, transposed_1[NU] = {0}, product_1[NU*NU] = {0}, times_1[NU] = {0},
         add_1[NU] = {0}, tau[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV) + total(tau_min, NU) +
-        total(tau_max, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-        check(NU, 1, tau_min, why.invalid);
-        check(NU, 1, tau_max, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
+    check_two(NU, tau_min, NU, tau_max, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     reference = optional(NU, reference, no_reference, why.invalid);
     required_run(m, X, V, A, required, H, &why);
@@ -4093,57 +3768,49 @@ int fivebar_redundant_force_distribution(const prepared *m, const real *X, const
         add_1[i] = least_norm_1[i] + times_1[i];
     }
     nearest_within(NU, add_1, product_1, tau_min, tau_max, tau, why.unreachable, why.overflow);
-    check(NU, 1, tau, why.overflow);
-    copy(NU, tau, tau_out);
-    return settled(&why, NU, tau_out);
+    return finished(NU, tau, tau_out, &why);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    real q[NJ] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
-    verdict why;
+    real q[NJ] = {0}, subtract_1[NU] = {0}, residual[NU] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    const real *const q_of_inverse_kinematics_from_0 = q;
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
+        subtract_1[i] = q_actuated[i] - q[i];
     }
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = subtract_1[i];
+        residual[i] = subtract_1[i];
     }
-    wrap_turns(NU, 1, fivebar_redundant_ACTUATED, gap);
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    wrap_turns(NU, 1, fivebar_redundant_ACTUATED, residual);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -4155,21 +3822,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -4183,17 +3850,11 @@ int fivebar_redundant_forward_kinematics(const prepared *m, const real *q_actuat
     *X0, real *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int fivebar_redundant_dissipation(const prepared *m, const real *X, const real *V, real
@@ -4202,185 +3863,136 @@ int fivebar_redundant_dissipation(const prepared *m, const real *X, const real *
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int fivebar_redundant_momentum(const prepared *m, const real *X, const real *V, real
     *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int fivebar_redundant_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int fivebar_redundant_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int fivebar_redundant_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     const real *const q = q_of_inverse_kinematics;
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int fivebar_redundant_actuator_rates(const prepared *m, const real *X, const real *V, real
     *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     const real *const qd = qd_of_joint_rates;
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int fivebar_redundant_actuator_accelerations(const prepared *m, const real *X, const real *V,
     const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     const real *const qdd = qdd_of_joint_accelerations;
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int fivebar_redundant_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int fivebar_redundant_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
+    check_two(NQ, X, NV, step, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int fivebar_redundant_difference(const real *X0, const real *X1, real *step_out)
 {
     real step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
+    check_two(NQ, X0, NQ, X1, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         step[i] = X1[i] - X0[i];
     }
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int fivebar_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real subtract_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -4390,9 +4002,7 @@ int fivebar_redundant_interpolate(const real *X0, const real *X1, const real *s,
     for (size_t i = 0; i < NQ; ++i) {
         X[i] = X0[i] + scale_1[i];
     }
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

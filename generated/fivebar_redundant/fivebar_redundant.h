@@ -192,7 +192,7 @@ int fivebar_redundant_inverse_kinematics(const fivebar_redundant_model *model, c
 size_t fivebar_redundant_inverse_kinematics_batch(const fivebar_redundant_model *model, size_t n,
     const fivebar_redundant_real *X, fivebar_redundant_real *q, int *status);
 
-/* Rates of all joints. 94 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 96 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int fivebar_redundant_joint_rates(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *rates);
@@ -380,7 +380,7 @@ int fivebar_redundant_actuator_positions(const fivebar_redundant_model *model, c
 size_t fivebar_redundant_actuator_positions_batch(const fivebar_redundant_model *model, size_t n,
     const fivebar_redundant_real *X, fivebar_redundant_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 94 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X
+/* Rates of the actuated joints, in the order of tau. 96 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X
    (NQ), V (NV). Out: rates (NU). */
 int fivebar_redundant_actuator_rates(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *rates);

@@ -1628,11 +1628,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1837,17 +1837,17 @@ def _spread(a, n):
     return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
-def _missed_bound(start, t, bounds, side):
-    """The bound that is missed by most, and 1 for a lower, -1 for an upper one; None if none is."""
+def _violated_bound(start, t, bounds, side):
+    """The bound that is violated by most, and 1 for a lower, -1 for an upper one; None if none is."""
     size, endless = np.max(np.abs(start), axis=0)
     found = None
     for sign, bound in zip((1.0, -1.0), bounds):
         for k in np.flatnonzero(np.isfinite(bound) & (side == 0.0)).tolist():
-            gap, rate = sign * (bound[k] - t[k, 0]), -sign * t[k, 1]
+            excess, rate = sign * (bound[k] - t[k, 0]), -sign * t[k, 1]
             rate = rate if abs(rate) > _PIVOT * endless else 0.0
-            if rate > 0.0 or (rate == 0.0 and gap > _PIVOT * (size + abs(bound[k]))):
-                if found is None or (rate, gap) > found[0]:
-                    found = (rate, gap), (k, sign)
+            if rate > 0.0 or (rate == 0.0 and excess > _PIVOT * (size + abs(bound[k]))):
+                if found is None or (rate, excess) > found[0]:
+                    found = (rate, excess), (k, sign)
     return found and found[1]
 
 
@@ -1864,10 +1864,10 @@ def _at_bounds(start, gram, bounds, side):
 
 def _nearest_point(start, gram, *bounds):
     """The point (n, 2) within the bounds that is nearest to the start; None if there is none."""
-    amounts, side, new = np.zeros_like(start), np.zeros(len(start)), None
+    coefficients, side, new = np.zeros_like(start), np.zeros(len(start)), None
     for _ in range(_TURNS * len(start)):
-        t = start + gram @ amounts
-        new = new or _missed_bound(start, t, bounds, side)
+        t = start + gram @ coefficients
+        new = new or _violated_bound(start, t, bounds, side)
         if new is None:
             return _at_bounds(start, gram, bounds, side)
         p, sign = new
@@ -1875,19 +1875,19 @@ def _nearest_point(start, gram, *bounds):
         without[kept] = np.linalg.solve(gram[np.ix_(kept, kept)], sign * gram[kept, p])
         apart, clear = gram[p, p] - sign * gram[p] @ without, _PIVOT * (1.0 + without @ without)
         leaving = [k for k in kept.tolist() if side[k] * without[k] > clear]
-        steps = [(*(amounts[k, ::-1] / without[k]).tolist(), k) for k in leaving]
+        steps = [(*(coefficients[k, ::-1] / without[k]).tolist(), k) for k in leaving]
         if apart > clear:
-            gap = sign * (bounds[0 if sign > 0.0 else 1][p] - t[p, 0])
-            steps.append((-sign * t[p, 1] / apart, gap / apart, -1))
+            excess = sign * (bounds[0 if sign > 0.0 else 1][p] - t[p, 0])
+            steps.append((-sign * t[p, 1] / apart, excess / apart, -1))
         if not steps:
             return None
         *step, k = min(steps)
-        amounts -= np.outer(without, step[::-1])
-        amounts[p] += sign * np.array(step[::-1])
+        coefficients -= np.outer(without, step[::-1])
+        coefficients[p] += sign * np.array(step[::-1])
         if k < 0:
             side[p], new = sign, None
         else:
-            side[k] = amounts[k] = 0.0
+            side[k] = coefficients[k] = 0.0
     return None
 
 
@@ -1927,8 +1927,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1936,7 +1936,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1944,11 +1944,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -2088,16 +2088,19 @@ def _run_dynamics(m, X, V):
         rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
             axis_y_rrr_leg1_axes2_x*t_dot_y)
         )
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_2 = (
+        rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y + axis_y_rrr_leg1_axes2_x*t_dot_x
+            - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+        )
         # (rrr_leg1-W_1) centripetal tensor of link 1
         rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = (
-        rrr_leg1_qd_1 + rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y +
-            axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
-        )
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_t = rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
         rrr_leg1_bias_in_axes2_x = (
         rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
             rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x
@@ -2106,17 +2109,21 @@ def _run_dynamics(m, X, V):
         rrr_leg1_qdd_1_o = -rrr_leg1_bias_in_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_leg1_alpha_2_o_in_axes2_z = (
-        rrr_leg1_qdd_1_o +
-            rrr_leg1_w_2_in_axes2_y*(rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
-            - rrr_leg1_qdd_1_o*rrr_leg1_r_1_in_axes2_x)
+        rrr_leg1_qdd_1_o + rrr_leg1_w_2_in_axes2_y*(rrr_leg1_bias_t -
+            rrr_leg1_qdd_1_o*rrr_leg1_r_1_in_axes2_x)
+        )
+        # (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_leg1_g_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*gravity_x - axis_y_rrr_leg1_axes2_x*gravity_y
+        )
+        rrr_leg1_g_in_axes2_y = (
+        axis_x_rrr_leg1_axes2_x*gravity_y + axis_y_rrr_leg1_axes2_x*gravity_x
         )
         # (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_leg1_mu_2_o_in_axes2_z = (
         rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_o_in_axes2_z +
-            rrr_leg1_h_2_in_spec2_y*(axis_x_rrr_leg1_axes2_x*gravity_x -
-            axis_y_rrr_leg1_axes2_x*gravity_y) -
-            rrr_leg1_h_2_in_spec2_x*(axis_x_rrr_leg1_axes2_x*gravity_y +
-            axis_y_rrr_leg1_axes2_x*gravity_x)
+            rrr_leg1_g_in_axes2_x*rrr_leg1_h_2_in_spec2_y -
+            rrr_leg1_g_in_axes2_y*rrr_leg1_h_2_in_spec2_x
         )
         # (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_in_axes2_x
@@ -2124,14 +2131,15 @@ def _run_dynamics(m, X, V):
         rrr_leg1_w_1_in_axes2_x*(rrr_leg1_J_2_in_spec2_zz - rrr_leg1_d_Gamma_2_t_2) -
             rrr_leg1_h_2_in_spec2_y
         )
-        # (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_leg1_mu_1_o_in_axes1_z = (
-        rrr_leg1_J_1_in_spec1_zz*rrr_leg1_qdd_1_o +
-            rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t +
-            rrr_leg1_mu_1_t_2*rrr_leg1_s_1) -
-            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1)
+        # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
+        rrr_leg1_g_in_axes1_y = rrr_leg1_c_1*rrr_leg1_mu_1_t_2 - rrr_leg1_mu_1_t*rrr_leg1_s_1
+        rrr_leg1_mu_1_t_3 = (
+        rrr_leg1_g_in_axes1_y*rrr_leg1_h_1_in_spec1_x -
+            rrr_leg1_g_in_axes1_x*rrr_leg1_h_1_in_spec1_y
         )
+        # (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
+        rrr_leg1_mu_1_o_in_axes1_z = rrr_leg1_J_1_in_spec1_zz*rrr_leg1_qdd_1_o - rrr_leg1_mu_1_t_3
         # (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z + rrr_leg1_mu_2_o_in_axes2_z
         # (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
@@ -2141,6 +2149,9 @@ def _run_dynamics(m, X, V):
         )
         # (rrr_leg1-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_leg1_G_o_in_axes2_y = rrr_leg1_mu_2_o_in_axes2_z*rrr_leg1_w_2_in_axes2_y
+        # (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_c_t = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x
+        rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         # (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_d_c_in_axes2_xy = (
         rrr_leg1_d_phi_2_t - rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_1_in_axes2_x -
@@ -2148,13 +2159,12 @@ def _run_dynamics(m, X, V):
         )
         # (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_c_o_in_axes2_x = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+        rrr_leg1_c_t + rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
             rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_o_in_axes1_z)
         )
         rrr_leg1_c_o_in_axes2_y = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y - rrr_leg1_G_o_in_axes2_y -
+        rrr_leg1_c_t_2 - rrr_leg1_G_o_in_axes2_y -
             rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_x
         )
         # (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there
@@ -2259,16 +2269,19 @@ def _run_dynamics(m, X, V):
         rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
         # (rrr-qd_1) rate of joint 1
         rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
@@ -2276,25 +2289,27 @@ def _run_dynamics(m, X, V):
         rrr_qdd_1_o = -rrr_bias_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
-        rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
-            rrr_qdd_1_o*rrr_r_1_in_axes2_x)
+        rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_bias_t - rrr_qdd_1_o*rrr_r_1_in_axes2_x)
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
-        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
-            rrr_h_2_in_spec2_y*(axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y) -
-            rrr_h_2_in_spec2_x*(axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x)
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_g_in_axes2_x*rrr_h_2_in_spec2_y -
+            rrr_g_in_axes2_y*rrr_h_2_in_spec2_x
         )
         # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
         rrr_d_Gamma_2_in_axes2_x = (
         rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_J_1_in_spec1_zz*rrr_qdd_1_o + rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = rrr_J_1_in_spec1_zz*rrr_qdd_1_o - rrr_mu_1_t_3
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
@@ -2303,6 +2318,9 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
         rrr_d_phi_2_t - rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
@@ -2310,12 +2328,11 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_Q_t = (
@@ -2443,6 +2460,14 @@ def _run_M(m, X):
         rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
         )
         # (rrr_leg1-w_1) reciprocal vector 1
+        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        axis_y_rrr_leg1_axes2_x = (
+        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        )
+        axis_x_rrr_leg1_axes2_x = (
+        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        )
         rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
@@ -2465,31 +2490,23 @@ def _run_M(m, X):
             rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_leg1_Q_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_Q_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
-        axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_Q_t_2*rrr_leg1_base_frame_xy - rrr_leg1_Q_t*rrr_leg1_base_frame_xx
-        )
-        axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_Q_t_2*rrr_leg1_base_frame_yy - rrr_leg1_Q_t*rrr_leg1_base_frame_yx
-        )
-        rrr_leg1_Q_t_3 = (
+        rrr_leg1_Q_t = (
         rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_1_in_axes2_x + rrr_leg1_w_2_in_axes2_x) -
             rrr_leg1_d_c_in_axes2_yy - rrr_leg1_d_Gamma_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x -
             rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
-        rrr_leg1_Q_t_4 = 0.5*rrr_leg1_Q_t_3
-        rrr_leg1_Q_t_5 = (
-        axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 + axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy
+        rrr_leg1_Q_t_2 = 0.5*rrr_leg1_Q_t
+        rrr_leg1_Q_t_3 = (
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 + axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy
         )
-        rrr_leg1_Q_t_6 = (
-        axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 - axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy
+        rrr_leg1_Q_t_4 = (
+        axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 - axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy
         )
-        rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_5
+        rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3
         rrr_leg1_Q_xy = (
-        axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_6 + axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_5
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 + axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3
         )
-        rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_6
+        rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4
         ok = (
         ok & (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
             (rrr_leg1_disc_1 >= 0.0) & (abs(rrr_leg1_r_1_in_axes2_y) > _TOLERANCE * rrr_leg1_size)
@@ -2544,6 +2561,10 @@ def _run_M(m, X):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
@@ -2562,21 +2583,17 @@ def _run_M(m, X):
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx
-        axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx
-        rrr_Q_t_3 = (
+        rrr_Q_t = (
         rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) - rrr_d_c_in_axes2_yy -
             rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
             rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
         )
-        rrr_Q_t_4 = 0.5*rrr_Q_t_3
-        rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_6
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
@@ -2681,30 +2698,33 @@ def _run_Z(m, X, V):
         rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
         )
         # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_qd_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_qd_1_t
+        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_qd_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_qd_1_t
+        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
         )
+        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        # (rrr_leg1-qd_1) rate of joint 1
         rrr_leg1_qd_1 = (
         rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
             axis_y_rrr_leg1_axes2_x*t_dot_y)
         )
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_2 = (
+        rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y + axis_y_rrr_leg1_axes2_x*t_dot_x
+            - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+        )
         # (rrr_leg1-W_1) centripetal tensor of link 1
         rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = (
-        rrr_leg1_qd_1 + rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y +
-            axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
-        )
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_t = rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
         rrr_leg1_bias_in_axes2_x = (
         rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
             rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x
@@ -2713,39 +2733,46 @@ def _run_Z(m, X, V):
         rrr_leg1_qdd_1_o = -rrr_leg1_bias_in_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_leg1_alpha_2_o_in_axes2_z = (
-        rrr_leg1_qdd_1_o +
-            rrr_leg1_w_2_in_axes2_y*(rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
-            - rrr_leg1_qdd_1_o*rrr_leg1_r_1_in_axes2_x)
+        rrr_leg1_qdd_1_o + rrr_leg1_w_2_in_axes2_y*(rrr_leg1_bias_t -
+            rrr_leg1_qdd_1_o*rrr_leg1_r_1_in_axes2_x)
+        )
+        # (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_leg1_g_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*gravity_x - axis_y_rrr_leg1_axes2_x*gravity_y
+        )
+        rrr_leg1_g_in_axes2_y = (
+        axis_x_rrr_leg1_axes2_x*gravity_y + axis_y_rrr_leg1_axes2_x*gravity_x
         )
         # (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_leg1_mu_2_o_in_axes2_z = (
         rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_o_in_axes2_z +
-            rrr_leg1_h_2_in_spec2_y*(axis_x_rrr_leg1_axes2_x*gravity_x -
-            axis_y_rrr_leg1_axes2_x*gravity_y) -
-            rrr_leg1_h_2_in_spec2_x*(axis_x_rrr_leg1_axes2_x*gravity_y +
-            axis_y_rrr_leg1_axes2_x*gravity_x)
+            rrr_leg1_g_in_axes2_x*rrr_leg1_h_2_in_spec2_y -
+            rrr_leg1_g_in_axes2_y*rrr_leg1_h_2_in_spec2_x
+        )
+        # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
+        rrr_leg1_g_in_axes1_y = rrr_leg1_c_1*rrr_leg1_mu_1_t_2 - rrr_leg1_mu_1_t*rrr_leg1_s_1
+        rrr_leg1_mu_1_t_3 = (
+        rrr_leg1_g_in_axes1_y*rrr_leg1_h_1_in_spec1_x -
+            rrr_leg1_g_in_axes1_x*rrr_leg1_h_1_in_spec1_y
         )
         # (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_leg1_mu_1_o_in_axes1_z = (
-        rrr_leg1_J_1_in_spec1_zz*rrr_leg1_qdd_1_o +
-            rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t +
-            rrr_leg1_mu_1_t_2*rrr_leg1_s_1) -
-            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1)
-        )
+        rrr_leg1_mu_1_o_in_axes1_z = rrr_leg1_J_1_in_spec1_zz*rrr_leg1_qdd_1_o - rrr_leg1_mu_1_t_3
         # (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z + rrr_leg1_mu_2_o_in_axes2_z
         # (rrr_leg1-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_leg1_G_o_in_axes2_y = rrr_leg1_mu_2_o_in_axes2_z*rrr_leg1_w_2_in_axes2_y
+        # (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_c_t = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x
+        rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         # (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_c_o_in_axes2_x = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+        rrr_leg1_c_t + rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
             rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_o_in_axes1_z)
         )
         rrr_leg1_c_o_in_axes2_y = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y - rrr_leg1_G_o_in_axes2_y -
+        rrr_leg1_c_t_2 - rrr_leg1_G_o_in_axes2_y -
             rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_x
         )
         # (rrr_leg1-U) velocity and gravity terms of the leg force
@@ -2810,23 +2837,26 @@ def _run_Z(m, X, V):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
@@ -2834,32 +2864,36 @@ def _run_Z(m, X, V):
         rrr_qdd_1_o = -rrr_bias_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
-        rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
-            rrr_qdd_1_o*rrr_r_1_in_axes2_x)
+        rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_bias_t - rrr_qdd_1_o*rrr_r_1_in_axes2_x)
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
-        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
-            rrr_h_2_in_spec2_y*(axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y) -
-            rrr_h_2_in_spec2_x*(axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x)
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_g_in_axes2_x*rrr_h_2_in_spec2_y -
+            rrr_g_in_axes2_y*rrr_h_2_in_spec2_x
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_J_1_in_spec1_zz*rrr_qdd_1_o + rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = rrr_J_1_in_spec1_zz*rrr_qdd_1_o - rrr_mu_1_t_3
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-U) velocity and gravity terms of the leg force
         rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
@@ -2948,6 +2982,9 @@ def _run_H(m, X):
         rrr_leg1_r_1_in_axes1_x = (
         rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
         )
+        rrr_leg1_r_1_in_axes2_x = (
+        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
+        )
         rrr_leg1_r_1_in_axes2_y = (
         rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
         )
@@ -2965,8 +3002,7 @@ def _run_H(m, X):
         rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y*(rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2)
+        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -3023,20 +3059,17 @@ def _run_H(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = (
-        rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
@@ -3171,13 +3204,15 @@ def _run_required(m, X, V, A):
         rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
             axis_y_rrr_leg1_axes2_x*t_dot_y)
         )
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_2 = (
+        rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y + axis_y_rrr_leg1_axes2_x*t_dot_x
+            - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+        )
         # (rrr_leg1-W_1) centripetal tensor of link 1
         rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = (
-        rrr_leg1_qd_1 + rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y +
-            axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
-        )
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-S_ddot) acceleration of the connection point
@@ -3188,32 +3223,32 @@ def _run_required(m, X, V, A):
         axis_x_rrr_leg1_axes2_x*t_ddot_y + axis_y_rrr_leg1_axes2_x*t_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_t = rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
         rrr_leg1_bias_in_axes2_x = (
         rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
             rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
-        rrr_leg1_rel_in_axes2_y = (
-        rrr_leg1_S_ddot_in_axes2_y +
-            rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-B_1) acceleration tensor of link 1
-        rrr_leg1_B_1_in_axes1_xy = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
-        # (rrr_leg1-alpha_2) angular acceleration of link 2
-        rrr_leg1_alpha_2_in_axes2_z = (
+        rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y + rrr_leg1_bias_t
+        # (rrr_leg1-qdd_1) acceleration of joint 1
+        rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        # (rrr_leg1-qdd_2) acceleration of joint 2
+        rrr_leg1_qdd_2 = (
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y +
-            rrr_leg1_B_1_in_axes1_xy*rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy
+            rrr_leg1_qdd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
+        # (rrr_leg1-alpha_2) angular acceleration of link 2
+        rrr_leg1_alpha_2_in_axes2_z = rrr_leg1_qdd_2 - rrr_leg1_qdd_1_t
         # (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_leg1_acc_2_in_axes2_x = (
-        rrr_leg1_S_ddot_in_axes2_x + axis_y_rrr_leg1_axes2_x*gravity_y -
-            axis_x_rrr_leg1_axes2_x*gravity_x
+        rrr_leg1_g_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*gravity_x - axis_y_rrr_leg1_axes2_x*gravity_y
         )
-        rrr_leg1_acc_2_in_axes2_y = (
-        rrr_leg1_S_ddot_in_axes2_y - axis_x_rrr_leg1_axes2_x*gravity_y -
-            axis_y_rrr_leg1_axes2_x*gravity_x
+        rrr_leg1_g_in_axes2_y = (
+        axis_x_rrr_leg1_axes2_x*gravity_y + axis_y_rrr_leg1_axes2_x*gravity_x
         )
+        rrr_leg1_acc_2_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_g_in_axes2_x
+        rrr_leg1_acc_2_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y - rrr_leg1_g_in_axes2_y
         # (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_leg1_mu_2_in_axes2_z = (
         rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_in_axes2_z +
@@ -3221,25 +3256,27 @@ def _run_required(m, X, V, A):
             rrr_leg1_acc_2_in_axes2_x*rrr_leg1_h_2_in_spec2_y
         )
         # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_leg1_mu_1_in_axes1_z = (
-        rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1) -
-            rrr_leg1_B_1_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz -
-            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1)
+        rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
+        rrr_leg1_g_in_axes1_y = rrr_leg1_c_1*rrr_leg1_mu_1_t_2 - rrr_leg1_mu_1_t*rrr_leg1_s_1
+        rrr_leg1_mu_1_t_3 = (
+        rrr_leg1_g_in_axes1_y*rrr_leg1_h_1_in_spec1_x -
+            rrr_leg1_g_in_axes1_x*rrr_leg1_h_1_in_spec1_y
         )
+        rrr_leg1_mu_1_in_axes1_z = -rrr_leg1_mu_1_t_3 - rrr_leg1_J_1_in_spec1_zz*rrr_leg1_qdd_1_t
         # (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z
         # (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_leg1_G_in_axes2_y = rrr_leg1_mu_2_in_axes2_z*rrr_leg1_w_2_in_axes2_y
         # (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_c_t = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x
+        rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         rrr_leg1_c_in_axes2_x = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+        rrr_leg1_c_t + rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
             rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_in_axes1_z)
         )
         rrr_leg1_c_in_axes2_y = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y - rrr_leg1_G_in_axes2_y -
+        rrr_leg1_c_t_2 - rrr_leg1_G_in_axes2_y -
             rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_x
         )
         rrr_leg1_c_x = (
@@ -3318,64 +3355,62 @@ def _run_required(m, X, V, A):
         rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_1) rate of joint 1
         rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y + rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
-        )
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_in_axes2_y
         rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_in_axes2_x
@@ -3440,21 +3475,31 @@ def _run_inverse_kinematics(m, X):
         rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1
         # (rrr_leg1-root_1) root, with the sign of the branch
         rrr_leg1_root_1 = rrr_leg1_branch_1*sqrt(rrr_leg1_disc_1)
-        # (rrr_leg1-q_1) displacement of joint 1
+        # (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_leg1_rho2_1 = 1.0/rrr_leg1_rho2_1
-        rrr_leg1_q_1 = (
-        atan2(inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1),
-            inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1))
+        rrr_leg1_c_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1)
         )
+        # (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_leg1_s_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1)
+        )
+        # (rrr_leg1-q_1) displacement of joint 1
+        rrr_leg1_q_1 = atan2(rrr_leg1_s_1, rrr_leg1_c_1)
         # (rrr_leg1-x_2) from the origin of joint 2 to the connection point
         rrr_leg1_x_2_in_axes1_x = (
         inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x
         )
-        # (rrr_leg1-q_2) displacement of joint 2
-        rrr_leg1_q_2 = (
-        atan2(-inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1,
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x)
+        # (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_leg1_c_2 = (
+        inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
+        # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_leg1_s_2 = (
+        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        )
+        # (rrr_leg1-q_2) displacement of joint 2
+        rrr_leg1_q_2 = atan2(rrr_leg1_s_2, rrr_leg1_c_2)
         ok = (
         ok & (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
             (rrr_leg1_disc_1 >= 0.0)
@@ -3486,19 +3531,23 @@ def _run_inverse_kinematics(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-q_1) displacement of joint 1
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
-        rrr_q_1 = (
-        atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
-            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
-        )
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-q_1) displacement of joint 1
+        rrr_q_1 = atan2(rrr_s_1, rrr_c_1)
         # (rrr-x_2) from the origin of joint 2 to the connection point
         rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-q_2) displacement of joint 2
-        rrr_q_2 = (
-        atan2(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x)
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-q_2) displacement of joint 2
+        rrr_q_2 = atan2(rrr_s_2, rrr_c_2)
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
@@ -3507,7 +3556,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 94 mul, 48 add, 4 div, 2 sqrt, 0 trig
+# joint_rates: 96 mul, 48 add, 4 div, 2 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -3580,27 +3629,31 @@ def _run_joint_rates(m, X, V):
         rrr_leg1_r_1_in_axes1_x = (
         rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
         )
+        rrr_leg1_r_1_in_axes2_x = (
+        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
+        )
         rrr_leg1_r_1_in_axes2_y = (
         rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
         )
-        # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-w_1) reciprocal vector 1
+        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_qd_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_qd_1_t
+        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_qd_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_qd_1_t
+        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
         )
+        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        # (rrr_leg1-qd_1) rate of joint 1
         rrr_leg1_qd_1 = (
-        -(axis_x_rrr_leg1_axes2_x*t_dot_x -
-            axis_y_rrr_leg1_axes2_x*t_dot_y)/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
+            axis_y_rrr_leg1_axes2_x*t_dot_y)
         )
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y + axis_y_rrr_leg1_axes2_x*t_dot_x
-            - rrr_leg1_qd_1*(rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2))
+            - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
         )
         ok = (
         ok & (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
@@ -3650,17 +3703,20 @@ def _run_joint_rates(m, X, V):
         # (rrr-r_1) from joint 1 to the connection point, along the links
         rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
-        rrr_qd_1 = -(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)/rrr_r_1_in_axes2_y
+        rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*(rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2))
+            rrr_qd_1*rrr_r_1_in_axes2_x)
         )
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
@@ -3758,41 +3814,47 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
         )
         # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_qd_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_qd_1_t
+        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_qd_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_qd_1_t
+        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
         )
+        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        # (rrr_leg1-qd_1) rate of joint 1
         rrr_leg1_qd_1 = (
         rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
             axis_y_rrr_leg1_axes2_x*t_dot_y)
         )
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_2 = (
+        rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y + axis_y_rrr_leg1_axes2_x*t_dot_x
+            - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+        )
         # (rrr_leg1-W_1) centripetal tensor of link 1
         rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = (
-        rrr_leg1_qd_1 + rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y +
-            axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
+        # (rrr_leg1-W_2) centripetal tensor of link 2
+        rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
+        # (rrr_leg1-S_ddot) acceleration of the connection point
+        rrr_leg1_S_ddot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*t_ddot_x - axis_y_rrr_leg1_axes2_x*t_ddot_y
+        )
+        rrr_leg1_S_ddot_in_axes2_y = (
+        axis_x_rrr_leg1_axes2_x*t_ddot_y + axis_y_rrr_leg1_axes2_x*t_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_t = rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
         rrr_leg1_bias_in_axes2_x = (
         rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
-            rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
+            rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
-        rrr_leg1_rel_in_axes2_x = (
-        axis_x_rrr_leg1_axes2_x*t_ddot_x - rrr_leg1_bias_in_axes2_x -
-            axis_y_rrr_leg1_axes2_x*t_ddot_y
-        )
-        rrr_leg1_rel_in_axes2_y = (
-        axis_x_rrr_leg1_axes2_x*t_ddot_y + axis_y_rrr_leg1_axes2_x*t_ddot_x +
-            rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
-        )
+        rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
+        rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y + rrr_leg1_bias_t
         # (rrr_leg1-qdd_1) acceleration of joint 1
         rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-qdd_2) acceleration of joint 2
@@ -3851,33 +3913,35 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
-        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
-            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
+        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_in_axes2_x = (
-        axis_x_rrr_axes2_x*t_ddot_x - rrr_bias_in_axes2_x - axis_y_rrr_axes2_x*t_ddot_y
-        )
-        rrr_rel_in_axes2_y = (
-        axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x +
-            rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
-        )
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
         # (rrr-qdd_1) acceleration of joint 1
         rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
@@ -4011,13 +4075,15 @@ def _run_legs(m, X, V, A):
         rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
             axis_y_rrr_leg1_axes2_x*t_dot_y)
         )
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_2 = (
+        rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y + axis_y_rrr_leg1_axes2_x*t_dot_x
+            - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+        )
         # (rrr_leg1-W_1) centripetal tensor of link 1
         rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = (
-        rrr_leg1_qd_1 + rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y +
-            axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
-        )
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-S_ddot) acceleration of the connection point
@@ -4028,32 +4094,32 @@ def _run_legs(m, X, V, A):
         axis_x_rrr_leg1_axes2_x*t_ddot_y + axis_y_rrr_leg1_axes2_x*t_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_t = rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
         rrr_leg1_bias_in_axes2_x = (
         rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
             rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
-        rrr_leg1_rel_in_axes2_y = (
-        rrr_leg1_S_ddot_in_axes2_y +
-            rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-B_1) acceleration tensor of link 1
-        rrr_leg1_B_1_in_axes1_xy = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
-        # (rrr_leg1-alpha_2) angular acceleration of link 2
-        rrr_leg1_alpha_2_in_axes2_z = (
+        rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y + rrr_leg1_bias_t
+        # (rrr_leg1-qdd_1) acceleration of joint 1
+        rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        # (rrr_leg1-qdd_2) acceleration of joint 2
+        rrr_leg1_qdd_2 = (
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y +
-            rrr_leg1_B_1_in_axes1_xy*rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy
+            rrr_leg1_qdd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
+        # (rrr_leg1-alpha_2) angular acceleration of link 2
+        rrr_leg1_alpha_2_in_axes2_z = rrr_leg1_qdd_2 - rrr_leg1_qdd_1_t
         # (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_leg1_acc_2_in_axes2_x = (
-        rrr_leg1_S_ddot_in_axes2_x + axis_y_rrr_leg1_axes2_x*gravity_y -
-            axis_x_rrr_leg1_axes2_x*gravity_x
+        rrr_leg1_g_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*gravity_x - axis_y_rrr_leg1_axes2_x*gravity_y
         )
-        rrr_leg1_acc_2_in_axes2_y = (
-        rrr_leg1_S_ddot_in_axes2_y - axis_x_rrr_leg1_axes2_x*gravity_y -
-            axis_y_rrr_leg1_axes2_x*gravity_x
+        rrr_leg1_g_in_axes2_y = (
+        axis_x_rrr_leg1_axes2_x*gravity_y + axis_y_rrr_leg1_axes2_x*gravity_x
         )
+        rrr_leg1_acc_2_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_g_in_axes2_x
+        rrr_leg1_acc_2_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y - rrr_leg1_g_in_axes2_y
         # (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_leg1_mu_2_in_axes2_z = (
         rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_in_axes2_z +
@@ -4061,25 +4127,27 @@ def _run_legs(m, X, V, A):
             rrr_leg1_acc_2_in_axes2_x*rrr_leg1_h_2_in_spec2_y
         )
         # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_leg1_mu_1_in_axes1_z = (
-        rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1) -
-            rrr_leg1_B_1_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz -
-            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1)
+        rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
+        rrr_leg1_g_in_axes1_y = rrr_leg1_c_1*rrr_leg1_mu_1_t_2 - rrr_leg1_mu_1_t*rrr_leg1_s_1
+        rrr_leg1_mu_1_t_3 = (
+        rrr_leg1_g_in_axes1_y*rrr_leg1_h_1_in_spec1_x -
+            rrr_leg1_g_in_axes1_x*rrr_leg1_h_1_in_spec1_y
         )
+        rrr_leg1_mu_1_in_axes1_z = -rrr_leg1_mu_1_t_3 - rrr_leg1_J_1_in_spec1_zz*rrr_leg1_qdd_1_t
         # (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z
         # (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_leg1_G_in_axes2_y = rrr_leg1_mu_2_in_axes2_z*rrr_leg1_w_2_in_axes2_y
         # (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_c_t = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x
+        rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         rrr_leg1_c_in_axes2_x = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+        rrr_leg1_c_t + rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
             rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_in_axes1_z)
         )
         rrr_leg1_c_in_axes2_y = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y - rrr_leg1_G_in_axes2_y -
+        rrr_leg1_c_t_2 - rrr_leg1_G_in_axes2_y -
             rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_x
         )
         # (rrr_leg1-c_true) leg force on the platform without actuation, the last link's mass included
@@ -4164,64 +4232,62 @@ def _run_legs(m, X, V, A):
         rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_1) rate of joint 1
         rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y + rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
-        )
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
         rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass
@@ -4315,15 +4381,16 @@ def _run_potential(m, X):
         rrr_leg1_s_2 = (
         -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
+        # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
+        rrr_leg1_g_in_axes1_y = rrr_leg1_c_1*rrr_leg1_mu_1_t_2 - rrr_leg1_mu_1_t*rrr_leg1_s_1
         # (potential) potential energy
         rrr_leg1_potential_t_3 = (
-        (rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1)*(rrr_leg1_h_1_in_spec1_x +
-            rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_x +
+        rrr_leg1_g_in_axes1_x*(rrr_leg1_h_1_in_spec1_x + rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_x +
             rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t +
             rrr_leg1_potential_t_2*rrr_leg1_s_1) - rrr_leg1_h_2_in_spec2_y*rrr_leg1_s_2) +
-            (rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1)*(rrr_leg1_h_1_in_spec1_y +
-            rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_y + rrr_leg1_h_2_in_spec2_x*rrr_leg1_s_2 +
+            rrr_leg1_g_in_axes1_y*(rrr_leg1_h_1_in_spec1_y + rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_y
+            + rrr_leg1_h_2_in_spec2_x*rrr_leg1_s_2 +
             rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t_2 -
             rrr_leg1_potential_t*rrr_leg1_s_1))
         )
@@ -4372,14 +4439,16 @@ def _run_potential(m, X):
         rrr_s_2 = (
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
         # (potential) potential energy
         rrr_potential_t_3 = (
-        (rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x +
-            rrr_c_2*rrr_h_2_in_spec2_x + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
-            rrr_potential_t_2*rrr_s_1) - rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
-            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
-            rrr_potential_t*rrr_s_1))
+        rrr_g_in_axes1_x*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
+            rrr_h_2_in_spec2_y*rrr_s_2) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
+            rrr_c_2*rrr_h_2_in_spec2_y + rrr_h_2_in_spec2_x*rrr_s_2 +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 - rrr_potential_t*rrr_s_1))
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
@@ -4469,6 +4538,9 @@ def _run_condition(m, X):
         rrr_leg1_r_1_in_axes1_x = (
         rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
         )
+        rrr_leg1_r_1_in_axes2_x = (
+        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
+        )
         rrr_leg1_r_1_in_axes2_y = (
         rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
         )
@@ -4486,8 +4558,7 @@ def _run_condition(m, X):
         rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y*(rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2)
+        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -4565,20 +4636,17 @@ def _run_condition(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = (
-        rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_pivot_size = abs(rrr_rho2_1)
         rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
@@ -4758,12 +4826,12 @@ def _steps_force_distribution(m, X, V, A, tau_min, tau_max, wrench, reference):
     return (tau,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[0:3]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
-    gap = _wrapped(subtract_1, [0, 1, 2])
-    return (gap,)
+    residual = _wrapped(subtract_1, [0, 1, 2])
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -4772,7 +4840,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

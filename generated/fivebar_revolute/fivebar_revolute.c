@@ -144,9 +144,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -208,6 +208,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -256,7 +280,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -266,7 +290,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -279,7 +303,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -296,16 +320,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -313,7 +337,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1117,13 +1150,13 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real rrr_Kd_1, rrr_Kc_1, rrr_Ks_1, rrr_rho2_1, rrr_disc_1, rrr_root_1, inv_rrr_rho2_1, rrr_c_1,
-        rrr_s_1, rrr_x_2_in_axes1_x, rrr_c_2, rrr_s_2, rrr_r_1_in_axes1_y, rrr_r_1_in_axes1_x,
-        rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, rrr_w_1_t, rrr_w_1_t_2, axis_y_rrr_axes2_x,
-        axis_x_rrr_axes2_x, inv_rrr_r_1_in_axes2_y, rrr_w_1_x, rrr_w_1_y, rrr_qd_1_t_2,
-        rrr_W_1_in_axes1_xx, rrr_W_2_t, rrr_bias_in_axes2_x, rrr_w_2_in_axes2_x,
-        rrr_d_Gamma_2_in_axes2_x, rrr_d_Gamma_1_in_axes2_x, rrr_d_c_in_axes2_xy, rrr_acc_2_in_axes2_x,
-        rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
+    real rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2, rrr_r_1_in_axes2_x,
+        rrr_r_1_in_axes2_y, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, inv_rrr_r_1_in_axes2_y, rrr_w_1_x,
+        rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y,
+        rrr_mu_1_t_3, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qd_1_t, rrr_qd_2, rrr_bias_t,
+        rrr_bias_in_axes2_x, rrr_c_t, rrr_c_t_2, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx, rrr_Q_xy, rrr_Q_yy,
+        rrr_U_x, rrr_U_y, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x,
+        rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_rrr
@@ -1145,67 +1178,61 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
         rrr_S_y*m->rrr_base_frame_yy[i]);
     /* (rrr-rho2_1) squared amplitude */
-    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+    v->rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
-    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+    v->rrr_disc_1 = v->rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
     /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
+    const real rrr_root_1 = m->rrr_branch_1[i]*root(v->rrr_disc_1);
     /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-    const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+    const real inv_rrr_rho2_1 = 1/v->rrr_rho2_1;
+    v->rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
+    v->rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real rrr_c_2 =
-        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
+    v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rrr_s_2 =
+    v->rrr_s_2 =
         -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*rrr_s_2;
+    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*v->rrr_s_2;
     const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
-        rrr_c_2*m->rrr_platform_joint_offset_x[i];
-    const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-    const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        v->rrr_c_2*m->rrr_platform_joint_offset_x[i];
+    v->rrr_r_1_in_axes2_x = v->rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*v->rrr_s_2;
+    v->rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*v->rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
-    const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
+    const real rrr_w_1_t = v->rrr_c_2*v->rrr_s_1 + v->rrr_c_1*v->rrr_s_2;
+    const real rrr_w_1_t_2 = v->rrr_c_1*v->rrr_c_2 - v->rrr_s_1*v->rrr_s_2;
+    v->axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_w_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
+    v->axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_yx[i]*rrr_w_1_t;
-    const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-    const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-    const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-    /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-    v->rrr_Kd_1 = rrr_Kd_1;
-    v->rrr_Kc_1 = rrr_Kc_1;
-    v->rrr_Ks_1 = rrr_Ks_1;
-    v->rrr_rho2_1 = rrr_rho2_1;
-    v->rrr_disc_1 = rrr_disc_1;
-    v->rrr_root_1 = rrr_root_1;
-    v->inv_rrr_rho2_1 = inv_rrr_rho2_1;
-    v->rrr_c_1 = rrr_c_1;
-    v->rrr_s_1 = rrr_s_1;
-    v->rrr_x_2_in_axes1_x = rrr_x_2_in_axes1_x;
-    v->rrr_c_2 = rrr_c_2;
-    v->rrr_s_2 = rrr_s_2;
-    v->rrr_r_1_in_axes1_y = rrr_r_1_in_axes1_y;
-    v->rrr_r_1_in_axes1_x = rrr_r_1_in_axes1_x;
-    v->rrr_r_1_in_axes2_x = rrr_r_1_in_axes2_x;
-    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
-    v->rrr_w_1_t = rrr_w_1_t;
-    v->rrr_w_1_t_2 = rrr_w_1_t_2;
-    v->axis_y_rrr_axes2_x = axis_y_rrr_axes2_x;
-    v->axis_x_rrr_axes2_x = axis_x_rrr_axes2_x;
-    v->inv_rrr_r_1_in_axes2_y = inv_rrr_r_1_in_axes2_y;
-    v->rrr_w_1_x = rrr_w_1_x;
-    v->rrr_w_1_y = rrr_w_1_y;
-    v->rrr_qd_1_t_2 = rrr_qd_1_t_2;
+    v->inv_rrr_r_1_in_axes2_y = 1/v->rrr_r_1_in_axes2_y;
+    v->rrr_w_1_x = -v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
+    v->rrr_w_1_y = v->axis_y_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
+    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->rrr_g_in_axes2_x = v->axis_x_rrr_axes2_x*m->gravity_x -
+        v->axis_y_rrr_axes2_x*m->gravity_y;
+    v->rrr_g_in_axes2_y = v->axis_x_rrr_axes2_x*m->gravity_y +
+        v->axis_y_rrr_axes2_x*m->gravity_x;
+    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    v->rrr_g_in_axes1_x = v->rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v->rrr_s_1;
+    v->rrr_g_in_axes1_y = v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1;
+    v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
+        v->rrr_g_in_axes1_x*m->rrr_h_1_in_spec1_y[i];
+}
+
+INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
+{
+    /* (rrr-S_ddot) acceleration of the connection point */
+    const real t_ddot_x = A[0*w + j];
+    const real t_ddot_y = A[1*w + j];
+    v->rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*t_ddot_x -
+        v->axis_y_rrr_axes2_x*t_ddot_y;
+    v->rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*t_ddot_y +
+        v->axis_y_rrr_axes2_x*t_ddot_x;
 }
 
 INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1214,38 +1241,37 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rrr-qd_1) rate of joint 1 */
     const real t_dot_x = V[0*w + j];
     const real t_dot_y = V[1*w + j];
-    const real rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*(v->axis_x_rrr_axes2_x*t_dot_x -
+    v->rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*(v->axis_x_rrr_axes2_x*t_dot_x -
         v->axis_y_rrr_axes2_x*t_dot_y);
+    /* (rrr-qd_2) rate of joint 2 */
+    v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*t_dot_y +
+        v->axis_y_rrr_axes2_x*t_dot_x + v->rrr_qd_1_t*v->rrr_r_1_in_axes2_x);
     /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t;
+    const real rrr_W_1_in_axes1_xx = -v->rrr_qd_1_t*v->rrr_qd_1_t;
     /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z =
-        m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*t_dot_y +
-        v->axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t*v->rrr_r_1_in_axes2_x) - rrr_qd_1_t;
+    const real rrr_omega_2_in_axes2_z = v->rrr_qd_2 - v->rrr_qd_1_t;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v->rrr_c_2*m->rrr_joint2_offset_x[i]
-        - rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
-    v->rrr_W_1_in_axes1_xx = rrr_W_1_in_axes1_xx;
-    v->rrr_W_2_t = rrr_W_2_t;
-    v->rrr_bias_in_axes2_x = rrr_bias_in_axes2_x;
+    v->rrr_bias_t = rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
+    v->rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
+    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->rrr_c_t = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i];
+    v->rrr_c_t_2 = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i];
 }
 
-INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
+INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes2_y = v->rrr_c_2*m->rrr_platform_joint_offset_x[i]*v->rrr_s_2 -
-        v->rrr_r_1_in_axes1_x*v->rrr_s_2;
-    /* (rrr-w_1) reciprocal vector 1 */
-    const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-    const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(m->rrr_base_frame_yy[i]*v->rrr_w_1_t_2 -
-        m->rrr_base_frame_yx[i]*v->rrr_w_1_t);
-    const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(m->rrr_base_frame_xy[i]*v->rrr_w_1_t_2 -
-        m->rrr_base_frame_xx[i]*v->rrr_w_1_t);
-    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
-    v->rrr_w_1_x = rrr_w_1_x;
-    v->rrr_w_1_y = rrr_w_1_y;
+    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_rel_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
+    const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y + v->rrr_bias_t;
+    /* (rrr-qdd_1) acceleration of joint 1 */
+    v->rrr_qdd_1_t = v->inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+    /* (rrr-qdd_2) acceleration of joint 2 */
+    v->rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
+        v->rrr_qdd_1_t*v->rrr_r_1_in_axes2_x);
 }
 
 INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
@@ -1266,45 +1292,71 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
        without the mass at the connection point */
     const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*m->rrr_d_Gamma_2_in_axes2_y[i]
         - m->rrr_d_phi_2_in_axes2_xy[i] - m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
-    v->rrr_w_2_in_axes2_x = rrr_w_2_in_axes2_x;
-    v->rrr_d_Gamma_2_in_axes2_x = rrr_d_Gamma_2_in_axes2_x;
-    v->rrr_d_Gamma_1_in_axes2_x = rrr_d_Gamma_1_in_axes2_x;
-    v->rrr_d_c_in_axes2_xy = rrr_d_c_in_axes2_xy;
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = v->inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x -
+        m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x +
+        m->rrr_h_2_in_spec2_y[i]*(rrr_w_2_in_axes2_x - v->inv_rrr_r_1_in_axes2_y);
+    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+    const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
+        v->axis_x_rrr_axes2_x*rrr_Q_t_2;
+    const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
+        v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+    v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
 }
 
-INLINE void stage_rrr_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
-    *A, values_rrr *v)
+INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-S_ddot) acceleration of the connection point */
-    const real t_ddot_x = A[0*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*t_ddot_x -
-        v->axis_y_rrr_axes2_x*t_ddot_y;
-    const real rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*t_ddot_y +
-        v->axis_y_rrr_axes2_x*t_ddot_x;
-    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y +
-        v->rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
-    /* (rrr-B_1) acceleration tensor of link 1 */
-    const real rrr_B_1_in_axes1_xy = v->inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+    /* (rrr-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rrr_qdd_1_o = v->inv_rrr_r_1_in_axes2_y*v->rrr_bias_in_axes2_x;
+    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_alpha_2_o_in_axes2_z = rrr_qdd_1_o +
+        m->rrr_w_2_in_axes2_y[i]*(v->rrr_bias_t - rrr_qdd_1_o*v->rrr_r_1_in_axes2_x);
+    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_mu_2_o_in_axes2_z = v->rrr_g_in_axes2_x*m->rrr_h_2_in_spec2_y[i] -
+        v->rrr_g_in_axes2_y*m->rrr_h_2_in_spec2_x[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
+    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_mu_1_o_in_axes1_z = m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o -
+        v->rrr_mu_1_t_3;
+    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rrr_c_o_in_axes2_x = v->rrr_c_t +
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v->rrr_r_1_in_axes2_x -
+        rrr_N_1_o_in_axes1_z);
+    const real rrr_c_o_in_axes2_y = v->rrr_c_t_2 -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
+    /* (rrr-U) velocity and gravity terms of the leg force */
+    v->rrr_U_x = -v->axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
+    v->rrr_U_y = v->axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+}
+
+INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
+{
     /* (rrr-alpha_2) angular acceleration of link 2 */
-    const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
-        rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
+    const real rrr_alpha_2_in_axes2_z = v->rrr_qdd_2 - v->rrr_qdd_1_t;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_in_axes2_x = v->axis_y_rrr_axes2_x*m->gravity_y -
-        v->axis_x_rrr_axes2_x*m->gravity_x + rrr_S_ddot_in_axes2_x;
-    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
-        v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
+    v->rrr_acc_2_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_g_in_axes2_x;
+    v->rrr_acc_2_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_g_in_axes2_y;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_mu_2_in_axes2_z = rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+    const real rrr_mu_2_in_axes2_z = v->rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        v->rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v->rrr_s_1) -
-        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1)
-        - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
+    const real rrr_mu_1_in_axes1_z = -v->rrr_mu_1_t_3 -
+        m->rrr_J_1_in_spec1_zz[i]*v->rrr_qdd_1_t;
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
@@ -1313,16 +1365,11 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t w, size_t i, size_
     const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_in_axes2_x = v->rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
+    v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
         rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_in_axes2_y;
-    v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
-    v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
-    v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
-    v->rrr_c_in_axes2_y = rrr_c_in_axes2_y;
+    v->rrr_c_in_axes2_y = v->rrr_c_t_2 - rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] -
+        rrr_G_in_axes2_y;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
@@ -1335,63 +1382,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_X(m, w, i, j, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (rrr-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rrr_qdd_1_o = v.inv_rrr_r_1_in_axes2_y*v.rrr_bias_in_axes2_x;
-    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rrr_alpha_2_o_in_axes2_z = rrr_qdd_1_o +
-        m->rrr_w_2_in_axes2_y[i]*(v.rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v.rrr_s_2 -
-        rrr_qdd_1_o*v.rrr_r_1_in_axes2_x);
-    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real rrr_mu_2_o_in_axes2_z =
-        m->rrr_h_2_in_spec2_y[i]*(v.axis_x_rrr_axes2_x*m->gravity_x -
-        v.axis_y_rrr_axes2_x*m->gravity_y) -
-        m->rrr_h_2_in_spec2_x[i]*(v.axis_x_rrr_axes2_x*m->gravity_y +
-        v.axis_y_rrr_axes2_x*m->gravity_x) +
-        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
-    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
-        - m->rrr_mu_1_t[i]*v.rrr_s_1) + m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o;
-    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
-        v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
-        rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x -
-        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x +
-        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y);
-    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
-        v.axis_x_rrr_axes2_x*rrr_Q_t_2;
-    const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
-        v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
-    const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
-    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
-    /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
-        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
-    const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    stage_rrr_Z_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[3*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[4*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[3*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[4*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
     /* (rrr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_w_1_x;
     o[1*count + k] = v.rrr_w_1_y;
@@ -1402,7 +1400,7 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void dynamics_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1412,7 +1410,7 @@ INLINE void dynamics_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
-    *Z, verdict *t)
+    *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -1437,7 +1435,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     real sums[5] = {0};
     real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
@@ -1454,7 +1452,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
     real sums[5*LANES];
     real o_rrr[5*LANES];
@@ -1479,40 +1477,23 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
-    const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
-    const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
-        rrr_Q_t*m->rrr_base_frame_xx[i];
-    const real axis_x_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_yy[i] -
-        rrr_Q_t*m->rrr_base_frame_yx[i];
-    const real rrr_Q_t_3 = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x -
-        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x +
-        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y);
-    const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-    const real rrr_Q_t_5 = axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
-        axis_x_rrr_axes2_x*rrr_Q_t_4;
-    const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
-        axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
-    const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
-    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, verdict *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
+    *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -1528,7 +1509,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real sums[3] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
@@ -1544,7 +1525,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     M_after(m, 1, 0, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
     real sums[3*LANES];
     real o_rrr[2*LANES];
@@ -1568,78 +1550,24 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
-    /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*rrr_qd_1_t;
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real rrr_qd_1_t_3 = v.inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
-        axis_y_rrr_axes2_x*t_dot_y);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t_3*rrr_qd_1_t_3;
-    /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*t_dot_y +
-        axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t_3*v.rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
-    /* (rrr-W_2) centripetal tensor of link 2 */
-    const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
-    /* (rrr-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rrr_qdd_1_o = v.inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x;
-    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rrr_alpha_2_o_in_axes2_z = rrr_qdd_1_o +
-        m->rrr_w_2_in_axes2_y[i]*(rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v.rrr_s_2 -
-        rrr_qdd_1_o*v.rrr_r_1_in_axes2_x);
-    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real rrr_mu_2_o_in_axes2_z =
-        m->rrr_h_2_in_spec2_y[i]*(axis_x_rrr_axes2_x*m->gravity_x -
-        axis_y_rrr_axes2_x*m->gravity_y) -
-        m->rrr_h_2_in_spec2_x[i]*(axis_x_rrr_axes2_x*m->gravity_y +
-        axis_y_rrr_axes2_x*m->gravity_x) + m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
-    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
-        - m->rrr_mu_1_t[i]*v.rrr_s_1) + m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o;
-    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rrr_c_o_in_axes2_x = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
-        v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
-        rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
-    /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
-        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
-    const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_Z_dynamics(m, i, &v);
     /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
+    *t)
 {
     /* (Z_t) */
     const real Z_t_x_of_legs = sums[0*w + k];
@@ -1652,7 +1580,7 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += Z_t_x + Z_t_y;
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
     real sums[2] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
@@ -1668,8 +1596,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(m, 1, 0, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
     real sums[2*LANES];
     real o_rrr[2*LANES];
@@ -1693,7 +1621,6 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
-    stage_rrr_H_condition(m, i, &v);
     /* (rrr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_w_1_x;
     o[1*count + k] = v.rrr_w_1_y;
@@ -1704,7 +1631,7 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 }
 
 INLINE void H_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1713,7 +1640,7 @@ INLINE void H_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[4*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
@@ -1724,7 +1651,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
     real o_rrr[5*LANES];
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -1757,8 +1685,10 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
+    stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_legs_required(m, w, i, j, A, &v);
+    stage_rrr_A_V_X(m, i, &v);
+    stage_rrr_legs_required(m, i, &v);
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real rrr_c_x = v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y +
@@ -1777,7 +1707,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void required_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1800,7 +1730,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
     real s[2] = {0}, sums[2] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[4*LEGS(LEGS_OF_rrr)] = {0};
@@ -1818,7 +1748,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, verdict *restrict t)
+    real *restrict required, real *restrict H, status_flags *restrict t)
 {
     real s[2*LANES], sums[2*LANES];
     real o_rrr[4*LANES];
@@ -1846,13 +1776,9 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     /* (rrr-q_1) displacement of joint 1 */
-    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 +
-        v.rrr_Kc_1*v.rrr_root_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
-        v.rrr_Ks_1*v.rrr_root_1));
+    const real rrr_q_1 = angle(v.rrr_s_1, v.rrr_c_1);
     /* (rrr-q_2) displacement of joint 2 */
-    const real rrr_q_2 =
-        angle(-m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1,
-        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x);
+    const real rrr_q_2 = angle(v.rrr_s_2, v.rrr_c_2);
     /* (rrr-q_1) */
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
@@ -1863,7 +1789,7 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
 }
 
 INLINE void inverse_kinematics_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[2*i*w + k] = o[0*count + at];
     q[(1 + 2*i)*w + k] = o[1*count + at];
@@ -1872,7 +1798,7 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
@@ -1884,7 +1810,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
     real o_rrr[5*LANES];
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -1903,32 +1829,19 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*rrr_qd_1_t;
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real rrr_qd_1_t_3 = (axis_x_rrr_axes2_x*t_dot_x -
-        axis_y_rrr_axes2_x*t_dot_y)/v.rrr_r_1_in_axes2_y;
+    o[0*count + k] = -v.rrr_qd_1_t;
     /* (rrr-qd_2) rate of joint 2 */
-    const real rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*t_dot_y +
-        axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t_3*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
-        v.rrr_r_1_in_axes1_y*v.rrr_s_2));
-    /* (rrr-qd_1) */
-    o[0*count + k] = -rrr_qd_1_t_3;
-    /* (rrr-qd_2) */
-    o[1*count + k] = rrr_qd_2;
-    o[4*count + k] = rrr_qd_1_t_3 + rrr_qd_2;
+    o[1*count + k] = v.rrr_qd_2;
+    o[4*count + k] = v.rrr_qd_1_t + v.rrr_qd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void joint_rates_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[2*i*w + k] = o[0*count + at];
     qd[(1 + 2*i)*w + k] = o[1*count + at];
@@ -1937,7 +1850,8 @@ INLINE void joint_rates_place_rrr(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
@@ -1949,7 +1863,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
     real o_rrr[5*LANES];
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -1968,48 +1882,21 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
-    /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*rrr_qd_1_t;
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real rrr_qd_1_t_3 = v.inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
-        axis_y_rrr_axes2_x*t_dot_y);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t_3*rrr_qd_1_t_3;
-    /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*t_dot_y +
-        axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t_3*v.rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
-    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
-    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real t_ddot_x = A[0*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
-        - rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
-        + rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    stage_rrr_A_X(w, j, A, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_A_V_X(m, i, &v);
     /* (rrr-qdd_1) acceleration of joint 1 */
-    const real rrr_qdd_1_t = v.inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+    o[0*count + k] = -v.rrr_qdd_1_t;
     /* (rrr-qdd_2) acceleration of joint 2 */
-    const real rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
-        rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
-    /* (rrr-qdd_1) */
-    o[0*count + k] = -rrr_qdd_1_t;
-    /* (rrr-qdd_2) */
-    o[1*count + k] = rrr_qdd_2;
-    o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
+    o[1*count + k] = v.rrr_qdd_2;
+    o[4*count + k] = v.rrr_qdd_1_t + v.rrr_qdd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void joint_accelerations_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[2*i*w + k] = o[0*count + at];
     qdd[(1 + 2*i)*w + k] = o[1*count + at];
@@ -2019,7 +1906,7 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
@@ -2031,7 +1918,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
     real o_rrr[5*LANES];
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2050,8 +1937,10 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
+    stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_legs_required(m, w, i, j, A, &v);
+    stage_rrr_A_V_X(m, i, &v);
+    stage_rrr_legs_required(m, i, &v);
     /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
     const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
         v.rrr_acc_2_in_axes2_x*m->rrr_link2_mass[i];
@@ -2073,7 +1962,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[3*i*w + k] = o[0*count + at];
     leg_force[(3*i + 1)*w + k] = o[1*count + at];
@@ -2084,7 +1973,7 @@ INLINE void legs_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(leg_force, 3*NL);
@@ -2114,13 +2003,11 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     /* (potential) */
-    const real rrr_potential_t_3 = (v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1)*(m->rrr_h_1_in_spec1_x[i] +
+    const real rrr_potential_t_3 = v.rrr_g_in_axes1_x*(m->rrr_h_1_in_spec1_x[i] +
         v.rrr_c_2*m->rrr_h_2_in_spec2_x[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
         m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
-        (v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1)*(m->rrr_h_1_in_spec1_y[i]
-        + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
+        v.rrr_g_in_axes1_y*(m->rrr_h_1_in_spec1_y[i] + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
         m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
     /* (potential) */
@@ -2129,7 +2016,7 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -2145,7 +2032,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
     real s[1] = {0}, sums[1] = {0};
     real terms_rrr[LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
@@ -2163,7 +2050,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, status_flags
+    *t)
 {
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
@@ -2175,7 +2063,6 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
-    stage_rrr_H_condition(m, i, &v);
     /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
@@ -2201,7 +2088,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void condition_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *pivots, real *reach, verdict *t)
+    *o, real *H, real *pivots, real *reach, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2213,7 +2100,7 @@ INLINE void condition_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t 
 }
 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
-    *lengths, verdict *t)
+    *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_rrr = sums[0*w + k];
@@ -2224,7 +2111,7 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
     real sums[1] = {0};
     real terms_rrr[LEGS(LEGS_OF_rrr)] = {0}, o_rrr[7*LEGS(LEGS_OF_rrr)] = {0};
@@ -2245,196 +2132,179 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int fivebar_revolute_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int fivebar_revolute_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int fivebar_revolute_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int fivebar_revolute_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int fivebar_revolute_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int fivebar_revolute_joint_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int fivebar_revolute_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_2(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -2473,14 +2343,9 @@ int fivebar_revolute_inverse_dynamics(const prepared *m, const real *X, const re
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -2495,7 +2360,7 @@ int fivebar_revolute_inverse_dynamics(const prepared *m, const real *X, const re
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    return settled(&why, NU, tau_out);
+    return final_status(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -2503,7 +2368,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2514,8 +2379,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_2(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
 }
 
 int fivebar_revolute_forward_dynamics(const prepared *m, const real *X, const real *V, const real
@@ -2524,14 +2389,9 @@ int fivebar_revolute_forward_dynamics(const prepared *m, const real *X, const re
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
         subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -2550,7 +2410,7 @@ int fivebar_revolute_forward_dynamics(const prepared *m, const real *X, const re
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2559,7 +2419,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
         A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2574,8 +2434,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_2(LANES, NV, order_tau, sizes_tau, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int fivebar_revolute_complete_acceleration(const prepared *m, const real *X, const real *V, const
@@ -2585,13 +2445,11 @@ int fivebar_revolute_complete_acceleration(const prepared *m, const real *X, con
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int fivebar_revolute_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -2599,49 +2457,27 @@ int fivebar_revolute_leg_reactions(const prepared *m, const real *X, const real 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
-        unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[6] = {0}, forces[3*NL] = {0},
-        work[NV*PADDED(NV)];
-    verdict why;
+    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[6] = {0}, forces[3*NL] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, &why);
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - wrench[i];
-    }
-    eliminate_2(1, NV, order_tau, sizes_tau, H, subtract_1, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NV, 1, H, work);
-        solve_apart(NV, subtract_1, work, solve_1, why.singular);
-        check(NV, 1, solve_1, why.overflow);
-    }
+    flag_status(fivebar_revolute_inverse_dynamics(m, X, V, A, wrench, solve_1), &why);
     legs_run(m, X, V, A, leg_force, actuator, &why);
     for (size_t i = 0; i < 3*NL; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
-    check(3*NL, 1, forces, why.overflow);
-    copy(3*NL, forces, forces_out);
-    return settled(&why, 3*NL, forces_out);
+    return finished(3*NL, forces, forces_out, &why);
 }
 
 int fivebar_revolute_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
     real *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -2650,16 +2486,16 @@ int fivebar_revolute_energy(const prepared *m, const real *X, const real *V, rea
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int fivebar_revolute_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, reach[NL] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, legs_out, reach, &why);
     singular_values(NV, NU, H, sigma);
     if (!is_finite(why.total[0])) {
@@ -2669,8 +2505,8 @@ int fivebar_revolute_condition(const prepared *m, const real *X, real *sigma_out
     check(2, 1, lengths, why.overflow);
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int fivebar_revolute_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -2678,9 +2514,9 @@ int fivebar_revolute_manipulability(const prepared *m, const real *X, real *meas
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
         {0}, measure[1] = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
     singular_values(NV, NU, H, singular_values_1);
     spread(NV, singular_values_1, measure, isotropy);
@@ -2691,8 +2527,8 @@ int fivebar_revolute_manipulability(const prepared *m, const real *X, real *meas
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int fivebar_revolute_singularity_distance(const prepared *m, const real *X, real *actuators_out,
@@ -2700,9 +2536,9 @@ int fivebar_revolute_singularity_distance(const prepared *m, const real *X, real
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
         {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
     singular_values(NV, NU, H, singular_values_1);
     spread(NV, singular_values_1, spread_1, actuators);
@@ -2713,57 +2549,53 @@ int fivebar_revolute_singularity_distance(const prepared *m, const real *X, real
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    static const size_t places_gap[] = {0, 1};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[2] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
-    verdict why;
+    static const size_t places_residual[] = {0, 1};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[2] = {0}, subtract_1[NU] = {0}, residual[NU] =
+        {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(2, 1, fivebar_revolute_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
         subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = subtract_1[i];
+        residual[i] = subtract_1[i];
     }
-    wrap_turns(NU, 1, places_gap, gap);
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    wrap_turns(NU, 1, places_residual, residual);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -2775,21 +2607,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -2803,17 +2635,11 @@ int fivebar_revolute_forward_kinematics(const prepared *m, const real *q_actuate
     real *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int fivebar_revolute_dissipation(const prepared *m, const real *X, const real *V, real
@@ -2822,183 +2648,134 @@ int fivebar_revolute_dissipation(const prepared *m, const real *X, const real *V
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int fivebar_revolute_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int fivebar_revolute_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int fivebar_revolute_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int fivebar_revolute_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, fivebar_revolute_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int fivebar_revolute_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, fivebar_revolute_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int fivebar_revolute_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, fivebar_revolute_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int fivebar_revolute_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int fivebar_revolute_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
+    check_two(NQ, X, NV, step, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int fivebar_revolute_difference(const real *X0, const real *X1, real *step_out)
 {
     real step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
+    check_two(NQ, X0, NQ, X1, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         step[i] = X1[i] - X0[i];
     }
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int fivebar_revolute_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real subtract_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -3008,9 +2785,7 @@ int fivebar_revolute_interpolate(const real *X0, const real *X1, const real *s, 
     for (size_t i = 0; i < NQ; ++i) {
         X[i] = X0[i] + scale_1[i];
     }
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

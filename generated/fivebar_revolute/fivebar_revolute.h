@@ -157,7 +157,7 @@ int fivebar_revolute_inverse_kinematics(const fivebar_revolute_model *model, con
 size_t fivebar_revolute_inverse_kinematics_batch(const fivebar_revolute_model *model, size_t n,
     const fivebar_revolute_real *X, fivebar_revolute_real *q, int *status);
 
-/* Rates of all joints. 94 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 96 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int fivebar_revolute_joint_rates(const fivebar_revolute_model *model, const fivebar_revolute_real
     *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates);
@@ -307,7 +307,7 @@ int fivebar_revolute_actuator_positions(const fivebar_revolute_model *model, con
 size_t fivebar_revolute_actuator_positions_batch(const fivebar_revolute_model *model, size_t n,
     const fivebar_revolute_real *X, fivebar_revolute_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 94 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X
+/* Rates of the actuated joints, in the order of tau. 96 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X
    (NQ), V (NV). Out: rates (NU). */
 int fivebar_revolute_actuator_rates(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates);

@@ -1350,11 +1350,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1554,8 +1554,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1563,7 +1563,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1571,11 +1571,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1676,16 +1676,19 @@ def _run_dynamics(m, X, V):
         rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
-            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
@@ -1693,25 +1696,27 @@ def _run_dynamics(m, X, V):
         rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
-        rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
-            rrr_qdd_1_o*rrr_r_1_in_axes2_x)
+        rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_bias_t - rrr_qdd_1_o*rrr_r_1_in_axes2_x)
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
-        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
-            rrr_h_2_in_spec2_y*(axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y) -
-            rrr_h_2_in_spec2_x*(axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x)
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_g_in_axes2_x*rrr_h_2_in_spec2_y -
+            rrr_g_in_axes2_y*rrr_h_2_in_spec2_x
         )
         # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
         rrr_d_Gamma_2_in_axes2_x = (
         -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2)
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_J_1_in_spec1_zz*rrr_qdd_1_o + rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = rrr_J_1_in_spec1_zz*rrr_qdd_1_o - rrr_mu_1_t_3
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
@@ -1720,6 +1725,9 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
         inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y - rrr_d_phi_2_in_axes2_xy -
@@ -1727,12 +1735,11 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_Q_t = (
@@ -1838,6 +1845,10 @@ def _run_M(m, X):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
@@ -1856,21 +1867,17 @@ def _run_M(m, X):
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx
-        axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx
-        rrr_Q_t_3 = (
+        rrr_Q_t = (
         inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x + rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x -
             inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy -
             rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
         )
-        rrr_Q_t_4 = 0.5*rrr_Q_t_3
-        rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_6
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
@@ -1953,25 +1960,28 @@ def _run_Z(m, X, V):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
-        rrr_qd_1_t_3 = (
+        rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_in_axes1_xx = -rrr_qd_1_t_3*rrr_qd_1_t_3
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
-            rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
@@ -1979,32 +1989,36 @@ def _run_Z(m, X, V):
         rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
-        rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
-            rrr_qdd_1_o*rrr_r_1_in_axes2_x)
+        rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_bias_t - rrr_qdd_1_o*rrr_r_1_in_axes2_x)
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
-        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
-            rrr_h_2_in_spec2_y*(axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y) -
-            rrr_h_2_in_spec2_x*(axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x)
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_g_in_axes2_x*rrr_h_2_in_spec2_y -
+            rrr_g_in_axes2_y*rrr_h_2_in_spec2_x
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_J_1_in_spec1_zz*rrr_qdd_1_o + rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = rrr_J_1_in_spec1_zz*rrr_qdd_1_o - rrr_mu_1_t_3
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-U) velocity and gravity terms of the leg force
         rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
@@ -2073,20 +2087,17 @@ def _run_H(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = (
-        -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
@@ -2183,64 +2194,62 @@ def _run_required(m, X, V, A):
         rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
-            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y + rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
-        )
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_in_axes2_y
         rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_in_axes2_x
@@ -2298,19 +2307,23 @@ def _run_inverse_kinematics(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-q_1) displacement of joint 1
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
-        rrr_q_1 = (
-        atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
-            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
-        )
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-q_1) displacement of joint 1
+        rrr_q_1 = atan2(rrr_s_1, rrr_c_1)
         # (rrr-x_2) from the origin of joint 2 to the connection point
         rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-q_2) displacement of joint 2
-        rrr_q_2 = (
-        atan2(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x)
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-q_2) displacement of joint 2
+        rrr_q_2 = atan2(rrr_s_2, rrr_c_2)
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
@@ -2319,7 +2332,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 94 mul, 48 add, 4 div, 2 sqrt, 0 trig
+# joint_rates: 96 mul, 48 add, 4 div, 2 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -2375,26 +2388,29 @@ def _run_joint_rates(m, X, V):
         # (rrr-r_1) from joint 1 to the connection point, along the links
         rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
-        rrr_qd_1_t_3 = (
-        (axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)/rrr_r_1_in_axes2_y
+        rrr_qd_1_t = (
+        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
         )
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
-            rrr_qd_1_t_3*(rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2))
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-qd_1) rate of joint 1
-        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1_t_3
+        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1_t
         # (rrr-qd_2) rate of joint 2
         out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     return ok, (out_qd,)
@@ -2464,35 +2480,37 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
-        rrr_qd_1_t_3 = (
+        rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_in_axes1_xx = -rrr_qd_1_t_3*rrr_qd_1_t_3
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
-            rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-S_ddot) acceleration of the connection point
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
-        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
-            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
+        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_in_axes2_x = (
-        axis_x_rrr_axes2_x*t_ddot_x - rrr_bias_in_axes2_x - axis_y_rrr_axes2_x*t_ddot_y
-        )
-        rrr_rel_in_axes2_y = (
-        axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x +
-            rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
-        )
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
         # (rrr-qdd_1) acceleration of joint 1
         rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
@@ -2587,64 +2605,62 @@ def _run_legs(m, X, V, A):
         rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
-            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y + rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
-        )
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
         rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass
@@ -2721,14 +2737,16 @@ def _run_potential(m, X):
         rrr_s_2 = (
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
         # (potential) potential energy
         rrr_potential_t_3 = (
-        (rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x +
-            rrr_c_2*rrr_h_2_in_spec2_x + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
-            rrr_potential_t_2*rrr_s_1) - rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
-            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
-            rrr_potential_t*rrr_s_1))
+        rrr_g_in_axes1_x*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
+            rrr_h_2_in_spec2_y*rrr_s_2) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
+            rrr_c_2*rrr_h_2_in_spec2_y + rrr_h_2_in_spec2_x*rrr_s_2 +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 - rrr_potential_t*rrr_s_1))
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
@@ -2799,20 +2817,17 @@ def _run_condition(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = (
-        -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_pivot_size = abs(rrr_rho2_1)
         rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
@@ -2975,12 +2990,12 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[[0, 2]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
-    gap = _wrapped(subtract_1, [0, 1])
-    return (gap,)
+    residual = _wrapped(subtract_1, [0, 1])
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -2989,7 +3004,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

@@ -136,12 +136,12 @@ extern const char *const hexaglide_ACTUATOR_NAMES[HEXAGLIDE_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model);
 
-/* Inertia matrix M. 1047 mul, 759 add, 18 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1041 mul, 753 add, 18 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hexaglide_M(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real *M);
 size_t hexaglide_M_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
     hexaglide_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1119 mul, 834 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1128 mul, 840 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hexaglide_Z(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real *V,
     hexaglide_real *Z);
@@ -161,14 +161,14 @@ int hexaglide_inverse_kinematics(const hexaglide_model *model, const hexaglide_r
 size_t hexaglide_inverse_kinematics_batch(const hexaglide_model *model, size_t n, const
     hexaglide_real *X, hexaglide_real *q, int *status);
 
-/* Rates of all joints. 456 mul, 294 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 468 mul, 294 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int hexaglide_joint_rates(const hexaglide_model *model, const hexaglide_real *X, const
     hexaglide_real *V, hexaglide_real *rates);
 size_t hexaglide_joint_rates_batch(const hexaglide_model *model, size_t n, const hexaglide_real
     *X, const hexaglide_real *V, hexaglide_real *rates, int *status);
 
-/* Accelerations of all joints. 678 mul, 444 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 666 mul, 435 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hexaglide_joint_accelerations(const hexaglide_model *model, const hexaglide_real *X, const
     hexaglide_real *V, const hexaglide_real *A, hexaglide_real *accelerations);
@@ -176,14 +176,14 @@ size_t hexaglide_joint_accelerations_batch(const hexaglide_model *model, size_t 
     hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, hexaglide_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1863 mul, 1395 add, 18 div, 12 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1830 mul, 1371 add, 18 div, 12 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexaglide_dynamics(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
     *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H);
 size_t hexaglide_dynamics_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
     const hexaglide_real *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1233 mul, 933 add, 18 div, 12 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1215 mul, 915 add, 18 div, 12 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hexaglide_inverse_dynamics(const hexaglide_model *model, const hexaglide_real *X, const
@@ -192,7 +192,7 @@ size_t hexaglide_inverse_dynamics_batch(const hexaglide_model *model, size_t n, 
     hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, const hexaglide_real
     *wrench, hexaglide_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1863 mul, 1395 add, 18 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 1830 mul, 1371 add, 18 div, 12
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexaglide_forward_dynamics(const hexaglide_model *model, const hexaglide_real *X, const
@@ -212,7 +212,7 @@ size_t hexaglide_complete_acceleration_batch(const hexaglide_model *model, size_
     *wrench, hexaglide_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 1086 mul, 798 add, 18 div, 12 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 1074 mul, 789 add, 18 div, 12 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 3). */
 int hexaglide_leg_reactions(const hexaglide_model *model, const hexaglide_real *X, const
     hexaglide_real *V, const hexaglide_real *A, const hexaglide_real *wrench, hexaglide_real
@@ -269,7 +269,7 @@ int hexaglide_dissipation(const hexaglide_model *model, const hexaglide_real *X,
 size_t hexaglide_dissipation_batch(const hexaglide_model *model, size_t n, const hexaglide_real
     *X, const hexaglide_real *V, hexaglide_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1047 mul, 759 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 1041 mul, 753 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hexaglide_momentum(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
     *V, hexaglide_real *momentum);
@@ -298,14 +298,14 @@ int hexaglide_actuator_positions(const hexaglide_model *model, const hexaglide_r
 size_t hexaglide_actuator_positions_batch(const hexaglide_model *model, size_t n, const
     hexaglide_real *X, hexaglide_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 456 mul, 294 add, 18 div, 12 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 468 mul, 294 add, 18 div, 12 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int hexaglide_actuator_rates(const hexaglide_model *model, const hexaglide_real *X, const
     hexaglide_real *V, hexaglide_real *rates);
 size_t hexaglide_actuator_rates_batch(const hexaglide_model *model, size_t n, const hexaglide_real
     *X, const hexaglide_real *V, hexaglide_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 678 mul, 444 add, 18 div, 12 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 666 mul, 435 add, 18 div, 12 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hexaglide_actuator_accelerations(const hexaglide_model *model, const hexaglide_real *X, const
     hexaglide_real *V, const hexaglide_real *A, hexaglide_real *accelerations);

@@ -690,9 +690,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_pus,
         (inv_pus_size_t, pus_J_3_in_spec3_xx, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz,
@@ -731,9 +731,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_pus,
         (inv_pus_size_t, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz, pus_J_3_in_spec3_yz,
@@ -1522,11 +1522,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1783,8 +1783,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1792,7 +1792,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1800,11 +1800,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1852,15 +1852,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1863 mul, 1395 add, 18 div, 12 sqrt, 0 trig
+# dynamics: 1830 mul, 1371 add, 18 div, 12 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1942,42 +1941,15 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_pus_xx, M_tt_xy, M_tt_xz, M_tt_pus_yy, M_tt_yz, M_tt_pus_zz, M_ta_xx, M_ta_pus_xy,
-        M_ta_pus_xz, M_ta_pus_yx, M_ta_t, M_ta_pus_yz, M_ta_pus_zx, M_ta_pus_zy, M_ta_zz,
+        M_ta_pus_xz, M_ta_pus_yx, M_ta_yy, M_ta_pus_yz, M_ta_pus_zx, M_ta_pus_zy, M_ta_zz,
         M_aa_pus_xx, M_aa_pus_xy, M_aa_pus_xz, M_aa_pus_yy, M_aa_pus_yz, M_aa_pus_zz, Z_t_pus_x,
         Z_t_pus_y, Z_t_pus_z, Z_a_pus_x, Z_a_pus_y, Z_a_pus_z,
     ) = [0.0] * 27
@@ -2028,9 +2000,11 @@ def _run_dynamics(m, X, V):
         pus_J_3_in_axes2_yz = (
         pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x + pus_J_3_in_spec3_yz*pus_J_3_t_10
         )
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
-        pus_c_2 = -inv_pus_J_3_t_8*sqrt(pus_J_3_t_7)*pus_J_3_t_9*pus_branch_1
+        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
         pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
         # (pus-S_dot) velocity of the connection point
@@ -2116,15 +2090,15 @@ def _run_dynamics(m, X, V):
         axis_z_pus_axes3_x*pus_u_1_x + axis_z_pus_axes3_y*pus_u_1_y + axis_z_pus_axes3_z*pus_u_1_z
         )
         # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
+        pus_bias_in_axes3_x = -pus_bias_t*pus_omega_2_in_axes3_y - pus_qd_3*pus_qd_3_t
+        pus_bias_in_axes3_y = pus_bias_t*pus_omega_2_in_axes3_x
         pus_bias_in_axes3_z = (
         pus_W_3_in_axes3_xz*pus_platform_joint_offset_x + pus_omega_2_in_axes3_x*pus_qd_3_t
         )
         # (pus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        pus_rel_o_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
-        pus_rel_o_in_axes3_x = (
-        pus_u_1_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_o_t + pus_qd_3*pus_qd_3_t
-        )
-        pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t
+        pus_rel_o_in_axes3_x = pus_u_1_in_axes3_x - pus_bias_in_axes3_x
+        pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_bias_in_axes3_y
         pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z
         # (pus-qdd_1_o) remainder of: acceleration of joint 1
         pus_qdd_1_o = pus_rel_o_in_axes3_x*pus_w_1_in_axes3_x
@@ -2136,7 +2110,6 @@ def _run_dynamics(m, X, V):
         pus_alpha_2_o_t = pus_e_2_in_axes3_x*pus_qdd_2_o_t
         pus_alpha_2_o_in_axes3_y = pus_J_3_t_10*pus_qdd_2_o_t
         # (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        pus_d_alpha_3_in_axes3_xz = pus_e_2_in_axes3_x*pus_w_2_in_axes3_z
         pus_d_alpha_3_t = pus_J_3_t_10*pus_w_2_in_axes3_z
         # (pus-alpha_3_o) remainder of: angular acceleration of link 3
         pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t
@@ -2148,40 +2121,40 @@ def _run_dynamics(m, X, V):
         pus_B_3_o_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_o_in_axes3_x
         # (pus-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         pus_acc_1_o_in_axes0_x = pus_qdd_1_o - pus_g_in_axes0_x
+        # (pus-acc_3) acceleration of the reference point of link 3, less gravity
+        pus_acc_3_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
+        pus_g_in_axes3_z = pus_c_2*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
+        pus_g_in_axes3_x = pus_J_3_t_10*pus_acc_3_t + pus_e_2_in_axes3_x*pus_g_in_axes0_z
+        pus_g_in_axes3_y = pus_acc_3_t*pus_e_2_in_axes3_x - pus_J_3_t_10*pus_g_in_axes0_z
         # (pus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        pus_acc_3_o_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
-        pus_acc_3_o_in_axes3_x = (
-        pus_u_1_in_axes3_x - pus_J_3_t_10*pus_acc_3_o_t - pus_e_2_in_axes3_x*pus_g_in_axes0_z
-        )
-        pus_acc_3_o_in_axes3_y = (
-        pus_u_1_in_axes3_y + pus_J_3_t_10*pus_g_in_axes0_z - pus_acc_3_o_t*pus_e_2_in_axes3_x
-        )
-        pus_acc_3_o_in_axes3_z = (
-        pus_u_1_in_axes3_z + pus_g_in_axes0_x*pus_s_2 - pus_c_2*pus_g_in_axes0_y
-        )
+        pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x - pus_g_in_axes3_x
+        pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y - pus_g_in_axes3_y
+        pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z - pus_g_in_axes3_z
+        # (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
+        pus_mu_3_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y
+        pus_mu_3_t_3 = pus_qd_3*pus_qd_3
+        pus_mu_3_t_4 = pus_J_3_in_spec3_yz*(pus_mu_3_t_2 - pus_mu_3_t_3)
+        pus_mu_3_t_5 = pus_J_3_in_spec3_xy*(pus_mu_3_t - pus_mu_3_t_3)
+        pus_mu_3_t_6 = pus_J_3_in_spec3_xz*(pus_mu_3_t - pus_mu_3_t_2)
         # (pus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
-        pus_mu_3_o_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y
-        pus_mu_3_o_t_3 = pus_qd_3*pus_qd_3
         pus_mu_3_o_in_axes3_x = (
         pus_B_3_o_in_axes3_yx*pus_J_3_in_spec3_xy + pus_B_3_o_in_axes3_zx*pus_J_3_in_spec3_xz +
-            pus_B_3_o_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_yz*(pus_mu_3_o_t_2 -
-            pus_mu_3_o_t_3) - pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_t -
-            pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_y - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_z
+            pus_B_3_o_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_mu_3_t_4 -
+            pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_t - pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_z
         )
         pus_mu_3_o_in_axes3_y = (
         pus_B_3_o_in_axes3_xy*pus_J_3_in_spec3_yz +
             pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_in_axes3_y +
-            pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_y -
+            pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_y - pus_mu_3_t_5 -
             pus_B_3_o_in_axes3_zx*pus_Sigma_3_in_axes3_xx -
-            pus_B_3_o_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_o_t -
-            pus_mu_3_o_t_3) - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_x
+            pus_B_3_o_in_axes3_zy*pus_J_3_in_spec3_xz - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_x
         )
         pus_mu_3_o_in_axes3_z = (
         pus_B_3_o_in_axes3_yx*pus_Sigma_3_in_axes3_xx + pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_z
-            + pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_x -
+            + pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_x - pus_mu_3_t_6 -
             pus_B_3_o_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_o_t -
-            pus_J_3_in_spec3_xz*(pus_mu_3_o_t - pus_mu_3_o_t_2) -
             pus_J_3_in_spec3_yz*pus_alpha_2_o_in_axes3_y
         )
         # (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
@@ -2191,27 +2164,32 @@ def _run_dynamics(m, X, V):
             pus_d_Gamma_3_in_axes3_z*pus_s_2)
         )
         # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        pus_d_Gamma_2_t = (
+        pus_d_Gamma_2_t = pus_e_2_in_axes3_x*pus_h_3_in_spec3_z - pus_J_3_t_10*pus_h_3_in_spec3_x
+        pus_d_Gamma_2_t_2 = (
         pus_w_2_in_axes3_z*(pus_J_3_t_10*(pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x +
             pus_J_3_in_spec3_zz*pus_J_3_t_10) -
             pus_e_2_in_axes3_x*(-pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x -
             pus_J_3_in_spec3_xz*pus_J_3_t_10))
         )
-        pus_d_Gamma_2_t_2 = pus_J_3_in_axes2_yz*pus_w_3_in_axes3_y
+        pus_d_Gamma_2_t_3 = pus_J_3_in_axes2_yz*pus_w_3_in_axes3_y
         pus_d_Gamma_2_in_axes3_x = (
-        pus_w_1_in_axes3_x*(pus_d_Gamma_2_t*pus_s_2 - pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) -
+        pus_w_1_in_axes3_x*(pus_d_Gamma_2_t_2*pus_s_2 - pus_d_Gamma_2_t_3*pus_e_1_in_axes3_y) -
             pus_J_3_t_10*pus_h_3_in_spec3_y
         )
-        pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_2 - pus_e_2_in_axes3_x*pus_h_3_in_spec3_y
-        pus_d_Gamma_2_in_axes3_z = (
-        pus_d_Gamma_2_t + pus_J_3_t_10*pus_h_3_in_spec3_x - pus_e_2_in_axes3_x*pus_h_3_in_spec3_z
-        )
+        pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_3 - pus_e_2_in_axes3_x*pus_h_3_in_spec3_y
+        pus_d_Gamma_2_in_axes3_z = pus_d_Gamma_2_t_2 - pus_d_Gamma_2_t
+        # (pus-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        pus_d_G_in_axes3_zy = pus_d_Gamma_2_in_axes3_y*pus_w_2_in_axes3_z
         # (pus-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         pus_G_o_t = (
         pus_w_2_in_axes3_z*(pus_J_3_t_10*pus_mu_3_o_in_axes3_y -
             pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x)
         )
         pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y
+        # (pus-c) leg force on the platform without actuation and without the mass at the connection point
+        pus_c_t = pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3)
+        pus_c_t_2 = pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3)
+        pus_c_t_3 = pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2)
         # (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         pus_d_c_in_axes3_xx = (
         pus_J_3_t_10*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
@@ -2227,66 +2205,63 @@ def _run_dynamics(m, X, V):
         pus_d_alpha_3_t*pus_h_3_in_spec3_y - pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_x -
             pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_x
         )
-        pus_d_c_in_axes3_yz = (
-        pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_y - pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_y
-        )
         # (pus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         pus_c_o_in_axes3_x = (
-        pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 +
-            pus_mu_3_o_t_3) - pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -
+        pus_c_t + pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z -
+            pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -
             pus_w_1_in_axes3_x*(pus_acc_1_o_in_axes0_x*pus_link1_mass -
             pus_G_o_in_axes3_y*pus_e_1_in_axes3_y - pus_G_o_t*pus_s_2)
         )
         pus_c_o_in_axes3_y = (
-        -pus_G_o_in_axes3_y - pus_B_3_o_in_axes3_yx*pus_h_3_in_spec3_x -
-            pus_alpha_2_o_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_o_t +
-            pus_mu_3_o_t_3)
+        -pus_G_o_in_axes3_y - pus_c_t_2 - pus_B_3_o_in_axes3_yx*pus_h_3_in_spec3_x -
+            pus_alpha_2_o_t*pus_h_3_in_spec3_y
         )
         pus_c_o_in_axes3_z = (
-        pus_G_o_t + pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_o_t +
-            pus_mu_3_o_t_2) - pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x
+        pus_G_o_t + pus_c_t_3 + pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z -
+            pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x
         )
         # (pus-Q) inertia of the leg at the connection point, without the mass gathered there
         pus_Q_t = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy
         pus_Q_t_2 = 0.5*pus_Q_t
         pus_Q_t_3 = (
         pus_d_c_in_axes3_xx + pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_z +
-            pus_d_alpha_3_t*pus_h_3_in_spec3_x - pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_z
+            pus_d_alpha_3_t*pus_h_3_in_spec3_x -
+            pus_e_2_in_axes3_x*pus_h_3_in_spec3_z*pus_w_2_in_axes3_z
         )
         pus_Q_t_4 = 0.5*pus_Q_t_3
         pus_Q_t_5 = (
-        axis_x_pus_axes3_x*pus_d_c_in_axes3_xy + axis_z_pus_axes3_x*pus_d_c_in_axes3_yz -
-            axis_y_pus_axes3_x*pus_Q_t_2
+        axis_y_pus_axes3_x*pus_Q_t_2 + axis_z_pus_axes3_x*pus_d_G_in_axes3_zy -
+            axis_x_pus_axes3_x*pus_d_c_in_axes3_xy
         )
         pus_Q_t_6 = (
-        axis_x_pus_axes3_y*pus_d_c_in_axes3_xy + axis_z_pus_axes3_y*pus_d_c_in_axes3_yz -
-            axis_y_pus_axes3_y*pus_Q_t_2
+        axis_y_pus_axes3_y*pus_Q_t_2 + axis_z_pus_axes3_y*pus_d_G_in_axes3_zy -
+            axis_x_pus_axes3_y*pus_d_c_in_axes3_xy
         )
         pus_Q_t_7 = (
-        axis_x_pus_axes3_z*pus_d_c_in_axes3_xy + axis_z_pus_axes3_z*pus_d_c_in_axes3_yz -
-            axis_y_pus_axes3_z*pus_Q_t_2
+        axis_y_pus_axes3_z*pus_Q_t_2 + axis_z_pus_axes3_z*pus_d_G_in_axes3_zy -
+            axis_x_pus_axes3_z*pus_d_c_in_axes3_xy
         )
         pus_Q_t_8 = axis_z_pus_axes3_x*pus_Q_t_4 - axis_x_pus_axes3_x*pus_d_c_in_axes3_xz
         pus_Q_t_9 = axis_z_pus_axes3_y*pus_Q_t_4 - axis_x_pus_axes3_y*pus_d_c_in_axes3_xz
         pus_Q_t_10 = axis_z_pus_axes3_z*pus_Q_t_4 - axis_x_pus_axes3_z*pus_d_c_in_axes3_xz
-        pus_Q_t_11 = axis_y_pus_axes3_x*pus_Q_t_5 - axis_z_pus_axes3_x*pus_Q_t_8
-        pus_Q_xx = -2.0*pus_Q_t_11 - pus_d_c_in_axes3_xx
+        pus_Q_t_11 = axis_y_pus_axes3_x*pus_Q_t_5 + axis_z_pus_axes3_x*pus_Q_t_8
+        pus_Q_xx = 2.0*pus_Q_t_11 - pus_d_c_in_axes3_xx
         pus_Q_xy = (
-        axis_z_pus_axes3_x*pus_Q_t_9 + axis_z_pus_axes3_y*pus_Q_t_8 - axis_y_pus_axes3_x*pus_Q_t_6
-            - axis_y_pus_axes3_y*pus_Q_t_5
+        axis_y_pus_axes3_x*pus_Q_t_6 + axis_y_pus_axes3_y*pus_Q_t_5 + axis_z_pus_axes3_x*pus_Q_t_9
+            + axis_z_pus_axes3_y*pus_Q_t_8
         )
         pus_Q_xz = (
-        axis_z_pus_axes3_x*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_8 -
-            axis_y_pus_axes3_x*pus_Q_t_7 - axis_y_pus_axes3_z*pus_Q_t_5
+        axis_y_pus_axes3_x*pus_Q_t_7 + axis_y_pus_axes3_z*pus_Q_t_5 +
+            axis_z_pus_axes3_x*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_8
         )
-        pus_Q_t_12 = axis_y_pus_axes3_y*pus_Q_t_6 - axis_z_pus_axes3_y*pus_Q_t_9
-        pus_Q_yy = -2.0*pus_Q_t_12 - pus_d_c_in_axes3_xx
+        pus_Q_t_12 = axis_y_pus_axes3_y*pus_Q_t_6 + axis_z_pus_axes3_y*pus_Q_t_9
+        pus_Q_yy = 2.0*pus_Q_t_12 - pus_d_c_in_axes3_xx
         pus_Q_yz = (
-        axis_z_pus_axes3_y*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_9 -
-            axis_y_pus_axes3_y*pus_Q_t_7 - axis_y_pus_axes3_z*pus_Q_t_6
+        axis_y_pus_axes3_y*pus_Q_t_7 + axis_y_pus_axes3_z*pus_Q_t_6 +
+            axis_z_pus_axes3_y*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_9
         )
-        pus_Q_t_13 = axis_y_pus_axes3_z*pus_Q_t_7 - axis_z_pus_axes3_z*pus_Q_t_10
-        pus_Q_zz = -2.0*pus_Q_t_13 - pus_d_c_in_axes3_xx
+        pus_Q_t_13 = axis_y_pus_axes3_z*pus_Q_t_7 + axis_z_pus_axes3_z*pus_Q_t_10
+        pus_Q_zz = 2.0*pus_Q_t_13 - pus_d_c_in_axes3_xx
         # (pus-U) velocity and gravity terms of the leg force
         pus_U_x = (
         -axis_x_pus_axes3_x*pus_c_o_in_axes3_x - axis_y_pus_axes3_x*pus_c_o_in_axes3_y -
@@ -2301,21 +2276,21 @@ def _run_dynamics(m, X, V):
             axis_z_pus_axes3_z*pus_c_o_in_axes3_z
         )
         # (M_ta) coupling block of M
-        pus_M_ta_t = -pus_Q_xy*pus_q_z
+        pus_M_ta_t = pus_Q_xy*pus_q_z
         pus_M_ta_t_2 = pus_Q_xz*pus_q_y
-        pus_M_ta_t_3 = pus_M_ta_t + pus_M_ta_t_2
+        pus_M_ta_t_3 = pus_M_ta_t_2 - pus_M_ta_t
         pus_M_ta_t_4 = pus_Q_xx*pus_q_z - pus_Q_xz*pus_q_x
         pus_M_ta_t_5 = pus_Q_xy*pus_q_x - pus_Q_xx*pus_q_y
         pus_M_ta_t_6 = pus_Q_yz*pus_q_y - pus_Q_yy*pus_q_z
         pus_M_ta_t_7 = pus_Q_yz*pus_q_x
-        pus_M_ta_t_8 = pus_M_ta_t + pus_M_ta_t_7
+        pus_M_ta_t_8 = pus_M_ta_t - pus_M_ta_t_7
         pus_M_ta_t_9 = pus_Q_yy*pus_q_x - pus_Q_xy*pus_q_y
         pus_M_ta_t_10 = pus_Q_zz*pus_q_y - pus_Q_yz*pus_q_z
         pus_M_ta_t_11 = pus_Q_xz*pus_q_z - pus_Q_zz*pus_q_x
         pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2
         # (M_aa) rotational block of M
         pus_M_aa_t = pus_M_ta_t_10*pus_q_y - pus_M_ta_t_6*pus_q_z
-        pus_M_aa_t_2 = pus_M_ta_t_11*pus_q_y + pus_M_ta_t_8*pus_q_z
+        pus_M_aa_t_2 = pus_M_ta_t_11*pus_q_y - pus_M_ta_t_8*pus_q_z
         pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_y - pus_M_ta_t_9*pus_q_z
         pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_z - pus_M_ta_t_11*pus_q_x
         pus_M_aa_t_5 = pus_M_ta_t_5*pus_q_z - pus_M_ta_t_12*pus_q_x
@@ -2345,7 +2320,7 @@ def _run_dynamics(m, X, V):
         M_ta_pus_xy += pus_M_ta_t_4
         M_ta_pus_xz += pus_M_ta_t_5
         M_ta_pus_yx += pus_M_ta_t_6
-        M_ta_t += pus_M_ta_t_8
+        M_ta_yy += pus_M_ta_t_8
         M_ta_pus_yz += pus_M_ta_t_9
         M_ta_pus_zx += pus_M_ta_t_10
         M_ta_pus_zy += pus_M_ta_t_11
@@ -2418,8 +2393,8 @@ def _run_dynamics(m, X, V):
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -M_ta_t
-    out_M[25] = -M_ta_t
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
@@ -2449,7 +2424,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 1047 mul, 759 add, 18 div, 12 sqrt, 0 trig
+# M: 1041 mul, 753 add, 18 div, 12 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2517,7 +2492,7 @@ def _run_M(m, X):
     J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
     M_tt_pus_xx, M_tt_xy, M_tt_xz, M_tt_pus_yy, M_tt_yz, M_tt_pus_zz, M_ta_xx, M_ta_pus_xy,
-        M_ta_pus_xz, M_ta_pus_yx, M_ta_t, M_ta_pus_yz, M_ta_pus_zx, M_ta_pus_zy, M_ta_zz,
+        M_ta_pus_xz, M_ta_pus_yx, M_ta_yy, M_ta_pus_yz, M_ta_pus_zx, M_ta_pus_zy, M_ta_zz,
         M_aa_pus_xx, M_aa_pus_xy, M_aa_pus_xz, M_aa_pus_yy, M_aa_pus_yz, M_aa_pus_zz,
     ) = [0.0] * 21
     for leg, k in legs[0]:
@@ -2566,24 +2541,50 @@ def _run_M(m, X):
         pus_J_3_in_axes2_yz = (
         pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x + pus_J_3_in_spec3_yz*pus_J_3_t_10
         )
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
-        pus_c_2 = -inv_pus_J_3_t_8*sqrt(pus_J_3_t_7)*pus_J_3_t_9*pus_branch_1
+        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
         pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
         # (pus-v_2) velocity of the connection point per rate of joint 2
         pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
+        pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
+        pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
+        axis_y_pus_axes3_x = (
+        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
+            pus_J_3_t_10*pus_base_frame_xz
+        )
+        axis_y_pus_axes3_y = (
+        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
+            pus_J_3_t_10*pus_base_frame_yz
+        )
+        axis_y_pus_axes3_z = (
+        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
+            pus_J_3_t_10*pus_base_frame_zz
+        )
+        axis_x_pus_axes3_x = (
+        axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
+        )
+        axis_x_pus_axes3_y = (
+        axis_y_pus_axes3_z*axis_z_pus_axes3_x - axis_y_pus_axes3_x*axis_z_pus_axes3_z
+        )
+        axis_x_pus_axes3_z = (
+        axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
+        )
         pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         # (pus-w_2) reciprocal vector 2
         pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
         pus_w_2_in_axes3_x = pus_s_2*pus_w_1_in_axes3_x*pus_w_2_in_axes3_z
         # (pus-w_3) reciprocal vector 3
-        pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
         pus_w_3_in_axes3_x = -pus_e_1_in_axes3_y*pus_w_1_in_axes3_x*pus_w_3_in_axes3_y
         # (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        pus_d_alpha_3_in_axes3_xz = pus_e_2_in_axes3_x*pus_w_2_in_axes3_z
         pus_d_alpha_3_t = pus_J_3_t_10*pus_w_2_in_axes3_z
         # (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_yz*pus_w_2_in_axes3_z
@@ -2592,21 +2593,22 @@ def _run_M(m, X):
             pus_d_Gamma_3_in_axes3_z*pus_s_2)
         )
         # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        pus_d_Gamma_2_t = (
+        pus_d_Gamma_2_t = pus_e_2_in_axes3_x*pus_h_3_in_spec3_z - pus_J_3_t_10*pus_h_3_in_spec3_x
+        pus_d_Gamma_2_t_2 = (
         pus_w_2_in_axes3_z*(pus_J_3_t_10*(pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x +
             pus_J_3_in_spec3_zz*pus_J_3_t_10) -
             pus_e_2_in_axes3_x*(-pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x -
             pus_J_3_in_spec3_xz*pus_J_3_t_10))
         )
-        pus_d_Gamma_2_t_2 = pus_J_3_in_axes2_yz*pus_w_3_in_axes3_y
+        pus_d_Gamma_2_t_3 = pus_J_3_in_axes2_yz*pus_w_3_in_axes3_y
         pus_d_Gamma_2_in_axes3_x = (
-        pus_w_1_in_axes3_x*(pus_d_Gamma_2_t*pus_s_2 - pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) -
+        pus_w_1_in_axes3_x*(pus_d_Gamma_2_t_2*pus_s_2 - pus_d_Gamma_2_t_3*pus_e_1_in_axes3_y) -
             pus_J_3_t_10*pus_h_3_in_spec3_y
         )
-        pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_2 - pus_e_2_in_axes3_x*pus_h_3_in_spec3_y
-        pus_d_Gamma_2_in_axes3_z = (
-        pus_d_Gamma_2_t + pus_J_3_t_10*pus_h_3_in_spec3_x - pus_e_2_in_axes3_x*pus_h_3_in_spec3_z
-        )
+        pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_3 - pus_e_2_in_axes3_x*pus_h_3_in_spec3_y
+        pus_d_Gamma_2_in_axes3_z = pus_d_Gamma_2_t_2 - pus_d_Gamma_2_t
+        # (pus-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        pus_d_G_in_axes3_zy = pus_d_Gamma_2_in_axes3_y*pus_w_2_in_axes3_z
         # (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         pus_d_c_in_axes3_xx = (
         pus_J_3_t_10*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
@@ -2622,91 +2624,64 @@ def _run_M(m, X):
         pus_d_alpha_3_t*pus_h_3_in_spec3_y - pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_x -
             pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_x
         )
-        pus_d_c_in_axes3_yz = (
-        pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_y - pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_y
-        )
         # (pus-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
-        axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
-        axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
-        pus_Q_t = pus_e_2_in_axes3_x*pus_s_2
-        axis_y_pus_axes3_x = (
-        pus_Q_t*pus_base_frame_xy + pus_base_frame_xx*pus_e_1_in_axes3_y -
-            pus_J_3_t_10*pus_base_frame_xz
-        )
-        axis_y_pus_axes3_y = (
-        pus_Q_t*pus_base_frame_yy + pus_base_frame_yx*pus_e_1_in_axes3_y -
-            pus_J_3_t_10*pus_base_frame_yz
-        )
-        axis_y_pus_axes3_z = (
-        pus_Q_t*pus_base_frame_zy + pus_base_frame_zx*pus_e_1_in_axes3_y -
-            pus_J_3_t_10*pus_base_frame_zz
-        )
-        axis_x_pus_axes3_x = (
-        axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
-        )
-        axis_x_pus_axes3_y = (
-        axis_y_pus_axes3_z*axis_z_pus_axes3_x - axis_y_pus_axes3_x*axis_z_pus_axes3_z
-        )
-        axis_x_pus_axes3_z = (
-        axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
-        )
-        pus_Q_t_2 = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy
-        pus_Q_t_3 = 0.5*pus_Q_t_2
-        pus_Q_t_4 = (
+        pus_Q_t = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy
+        pus_Q_t_2 = 0.5*pus_Q_t
+        pus_Q_t_3 = (
         pus_d_c_in_axes3_xx + pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_z +
-            pus_d_alpha_3_t*pus_h_3_in_spec3_x - pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_z
+            pus_d_alpha_3_t*pus_h_3_in_spec3_x -
+            pus_e_2_in_axes3_x*pus_h_3_in_spec3_z*pus_w_2_in_axes3_z
         )
-        pus_Q_t_5 = 0.5*pus_Q_t_4
+        pus_Q_t_4 = 0.5*pus_Q_t_3
+        pus_Q_t_5 = (
+        axis_y_pus_axes3_x*pus_Q_t_2 + axis_z_pus_axes3_x*pus_d_G_in_axes3_zy -
+            axis_x_pus_axes3_x*pus_d_c_in_axes3_xy
+        )
         pus_Q_t_6 = (
-        axis_x_pus_axes3_x*pus_d_c_in_axes3_xy + axis_z_pus_axes3_x*pus_d_c_in_axes3_yz -
-            axis_y_pus_axes3_x*pus_Q_t_3
+        axis_y_pus_axes3_y*pus_Q_t_2 + axis_z_pus_axes3_y*pus_d_G_in_axes3_zy -
+            axis_x_pus_axes3_y*pus_d_c_in_axes3_xy
         )
         pus_Q_t_7 = (
-        axis_x_pus_axes3_y*pus_d_c_in_axes3_xy + axis_z_pus_axes3_y*pus_d_c_in_axes3_yz -
-            axis_y_pus_axes3_y*pus_Q_t_3
+        axis_y_pus_axes3_z*pus_Q_t_2 + axis_z_pus_axes3_z*pus_d_G_in_axes3_zy -
+            axis_x_pus_axes3_z*pus_d_c_in_axes3_xy
         )
-        pus_Q_t_8 = (
-        axis_x_pus_axes3_z*pus_d_c_in_axes3_xy + axis_z_pus_axes3_z*pus_d_c_in_axes3_yz -
-            axis_y_pus_axes3_z*pus_Q_t_3
-        )
-        pus_Q_t_9 = axis_z_pus_axes3_x*pus_Q_t_5 - axis_x_pus_axes3_x*pus_d_c_in_axes3_xz
-        pus_Q_t_10 = axis_z_pus_axes3_y*pus_Q_t_5 - axis_x_pus_axes3_y*pus_d_c_in_axes3_xz
-        pus_Q_t_11 = axis_z_pus_axes3_z*pus_Q_t_5 - axis_x_pus_axes3_z*pus_d_c_in_axes3_xz
-        pus_Q_t_12 = axis_y_pus_axes3_x*pus_Q_t_6 - axis_z_pus_axes3_x*pus_Q_t_9
-        pus_Q_xx = -2.0*pus_Q_t_12 - pus_d_c_in_axes3_xx
+        pus_Q_t_8 = axis_z_pus_axes3_x*pus_Q_t_4 - axis_x_pus_axes3_x*pus_d_c_in_axes3_xz
+        pus_Q_t_9 = axis_z_pus_axes3_y*pus_Q_t_4 - axis_x_pus_axes3_y*pus_d_c_in_axes3_xz
+        pus_Q_t_10 = axis_z_pus_axes3_z*pus_Q_t_4 - axis_x_pus_axes3_z*pus_d_c_in_axes3_xz
+        pus_Q_t_11 = axis_y_pus_axes3_x*pus_Q_t_5 + axis_z_pus_axes3_x*pus_Q_t_8
+        pus_Q_xx = 2.0*pus_Q_t_11 - pus_d_c_in_axes3_xx
         pus_Q_xy = (
-        axis_z_pus_axes3_x*pus_Q_t_10 + axis_z_pus_axes3_y*pus_Q_t_9 -
-            axis_y_pus_axes3_x*pus_Q_t_7 - axis_y_pus_axes3_y*pus_Q_t_6
+        axis_y_pus_axes3_x*pus_Q_t_6 + axis_y_pus_axes3_y*pus_Q_t_5 + axis_z_pus_axes3_x*pus_Q_t_9
+            + axis_z_pus_axes3_y*pus_Q_t_8
         )
         pus_Q_xz = (
-        axis_z_pus_axes3_x*pus_Q_t_11 + axis_z_pus_axes3_z*pus_Q_t_9 -
-            axis_y_pus_axes3_x*pus_Q_t_8 - axis_y_pus_axes3_z*pus_Q_t_6
+        axis_y_pus_axes3_x*pus_Q_t_7 + axis_y_pus_axes3_z*pus_Q_t_5 +
+            axis_z_pus_axes3_x*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_8
         )
-        pus_Q_t_13 = axis_y_pus_axes3_y*pus_Q_t_7 - axis_z_pus_axes3_y*pus_Q_t_10
-        pus_Q_yy = -2.0*pus_Q_t_13 - pus_d_c_in_axes3_xx
+        pus_Q_t_12 = axis_y_pus_axes3_y*pus_Q_t_6 + axis_z_pus_axes3_y*pus_Q_t_9
+        pus_Q_yy = 2.0*pus_Q_t_12 - pus_d_c_in_axes3_xx
         pus_Q_yz = (
-        axis_z_pus_axes3_y*pus_Q_t_11 + axis_z_pus_axes3_z*pus_Q_t_10 -
-            axis_y_pus_axes3_y*pus_Q_t_8 - axis_y_pus_axes3_z*pus_Q_t_7
+        axis_y_pus_axes3_y*pus_Q_t_7 + axis_y_pus_axes3_z*pus_Q_t_6 +
+            axis_z_pus_axes3_y*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_9
         )
-        pus_Q_t_14 = axis_y_pus_axes3_z*pus_Q_t_8 - axis_z_pus_axes3_z*pus_Q_t_11
-        pus_Q_zz = -2.0*pus_Q_t_14 - pus_d_c_in_axes3_xx
+        pus_Q_t_13 = axis_y_pus_axes3_z*pus_Q_t_7 + axis_z_pus_axes3_z*pus_Q_t_10
+        pus_Q_zz = 2.0*pus_Q_t_13 - pus_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        pus_M_ta_t = -pus_Q_xy*pus_q_z
+        pus_M_ta_t = pus_Q_xy*pus_q_z
         pus_M_ta_t_2 = pus_Q_xz*pus_q_y
-        pus_M_ta_t_3 = pus_M_ta_t + pus_M_ta_t_2
+        pus_M_ta_t_3 = pus_M_ta_t_2 - pus_M_ta_t
         pus_M_ta_t_4 = pus_Q_xx*pus_q_z - pus_Q_xz*pus_q_x
         pus_M_ta_t_5 = pus_Q_xy*pus_q_x - pus_Q_xx*pus_q_y
         pus_M_ta_t_6 = pus_Q_yz*pus_q_y - pus_Q_yy*pus_q_z
         pus_M_ta_t_7 = pus_Q_yz*pus_q_x
-        pus_M_ta_t_8 = pus_M_ta_t + pus_M_ta_t_7
+        pus_M_ta_t_8 = pus_M_ta_t - pus_M_ta_t_7
         pus_M_ta_t_9 = pus_Q_yy*pus_q_x - pus_Q_xy*pus_q_y
         pus_M_ta_t_10 = pus_Q_zz*pus_q_y - pus_Q_yz*pus_q_z
         pus_M_ta_t_11 = pus_Q_xz*pus_q_z - pus_Q_zz*pus_q_x
         pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2
         # (M_aa) rotational block of M
         pus_M_aa_t = pus_M_ta_t_10*pus_q_y - pus_M_ta_t_6*pus_q_z
-        pus_M_aa_t_2 = pus_M_ta_t_11*pus_q_y + pus_M_ta_t_8*pus_q_z
+        pus_M_aa_t_2 = pus_M_ta_t_11*pus_q_y - pus_M_ta_t_8*pus_q_z
         pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_y - pus_M_ta_t_9*pus_q_z
         pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_z - pus_M_ta_t_11*pus_q_x
         pus_M_aa_t_5 = pus_M_ta_t_5*pus_q_z - pus_M_ta_t_12*pus_q_x
@@ -2728,7 +2703,7 @@ def _run_M(m, X):
         M_ta_pus_xy += pus_M_ta_t_4
         M_ta_pus_xz += pus_M_ta_t_5
         M_ta_pus_yx += pus_M_ta_t_6
-        M_ta_t += pus_M_ta_t_8
+        M_ta_yy += pus_M_ta_t_8
         M_ta_pus_yz += pus_M_ta_t_9
         M_ta_pus_zx += pus_M_ta_t_10
         M_ta_pus_zy += pus_M_ta_t_11
@@ -2777,8 +2752,8 @@ def _run_M(m, X):
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -M_ta_t
-    out_M[25] = -M_ta_t
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
@@ -2800,14 +2775,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1119 mul, 834 add, 18 div, 12 sqrt, 0 trig
+# Z: 1128 mul, 840 add, 18 div, 12 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2863,6 +2838,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2871,39 +2862,12 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_pus_x, Z_t_pus_y, Z_t_pus_z, Z_a_pus_x, Z_a_pus_y, Z_a_pus_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -2917,7 +2881,7 @@ def _run_Z(m, X, V):
             pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
             pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
-        # (pus-S) from the base point to the connection point
+        # (pus-J_3) inertia tensor of link 3 about the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -2927,29 +2891,33 @@ def _run_Z(m, X, V):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_z + t_z - pus_base_point_z
-        pus_S_in_axes0_x = (
-        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
+        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
+        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
+        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
+        pus_J_3_t_4 = (
+        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+            pus_J_3_t_3*pus_base_frame_zx
         )
-        pus_S_in_axes0_y = (
-        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        pus_J_3_t_5 = (
+        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+            pus_J_3_t_3*pus_base_frame_zy
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
-        # (pus-root_2) root, with the sign of the branch
-        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
+        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
+        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
+        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
+        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
+        )
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
+        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
+        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -2958,33 +2926,24 @@ def _run_Z(m, X, V):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
-        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
-        pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
-        # (pus-w_2) reciprocal vector 2
-        pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
-        # (pus-qd_1) rate of joint 1
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
         axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
         pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
-        pus_qd_1_t = pus_e_2_in_axes3_x*pus_s_2
+        pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
-        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_qd_1_t -
-            pus_base_frame_xz*pus_c_3
+        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
+            pus_J_3_t_10*pus_base_frame_xz
         )
         axis_y_pus_axes3_y = (
-        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_qd_1_t -
-            pus_base_frame_yz*pus_c_3
+        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
+            pus_J_3_t_10*pus_base_frame_yz
         )
         axis_y_pus_axes3_z = (
-        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_qd_1_t -
-            pus_base_frame_zz*pus_c_3
+        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
+            pus_J_3_t_10*pus_base_frame_zz
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -2995,6 +2954,11 @@ def _run_Z(m, X, V):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
+        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
+        pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
+        # (pus-qd_1) rate of joint 1
         pus_qd_1 = (
         pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
             axis_x_pus_axes3_z*pus_S_dot_z)
@@ -3012,7 +2976,7 @@ def _run_Z(m, X, V):
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
         pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
-        pus_omega_2_in_axes3_y = -pus_c_3*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_J_3_t_10*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
         pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
         pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
@@ -3031,15 +2995,15 @@ def _run_Z(m, X, V):
         axis_z_pus_axes3_x*pus_u_1_x + axis_z_pus_axes3_y*pus_u_1_y + axis_z_pus_axes3_z*pus_u_1_z
         )
         # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
+        pus_bias_in_axes3_x = -pus_bias_t*pus_omega_2_in_axes3_y - pus_qd_3*pus_qd_3_t
+        pus_bias_in_axes3_y = pus_bias_t*pus_omega_2_in_axes3_x
         pus_bias_in_axes3_z = (
         pus_W_3_in_axes3_xz*pus_platform_joint_offset_x + pus_omega_2_in_axes3_x*pus_qd_3_t
         )
         # (pus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        pus_rel_o_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
-        pus_rel_o_in_axes3_x = (
-        pus_u_1_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_o_t + pus_qd_3*pus_qd_3_t
-        )
-        pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t
+        pus_rel_o_in_axes3_x = pus_u_1_in_axes3_x - pus_bias_in_axes3_x
+        pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_bias_in_axes3_y
         pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z
         # (pus-qdd_1_o) remainder of: acceleration of joint 1
         pus_qdd_1_o = pus_rel_o_in_axes3_x*pus_w_1_in_axes3_x
@@ -3049,7 +3013,7 @@ def _run_Z(m, X, V):
         pus_qdd_3_o = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1_o - pus_rel_o_in_axes3_y)
         # (pus-alpha_2_o) remainder of: angular acceleration of link 2
         pus_alpha_2_o_t = pus_e_2_in_axes3_x*pus_qdd_2_o_t
-        pus_alpha_2_o_in_axes3_y = pus_c_3*pus_qdd_2_o_t
+        pus_alpha_2_o_in_axes3_y = pus_J_3_t_10*pus_qdd_2_o_t
         # (pus-alpha_3_o) remainder of: angular acceleration of link 3
         pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t
         pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz
@@ -3060,63 +3024,66 @@ def _run_Z(m, X, V):
         pus_B_3_o_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_o_in_axes3_x
         # (pus-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         pus_acc_1_o_in_axes0_x = pus_qdd_1_o - pus_g_in_axes0_x
+        # (pus-acc_3) acceleration of the reference point of link 3, less gravity
+        pus_acc_3_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
+        pus_g_in_axes3_z = pus_c_2*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
+        pus_g_in_axes3_x = pus_J_3_t_10*pus_acc_3_t + pus_e_2_in_axes3_x*pus_g_in_axes0_z
+        pus_g_in_axes3_y = pus_acc_3_t*pus_e_2_in_axes3_x - pus_J_3_t_10*pus_g_in_axes0_z
         # (pus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        pus_acc_3_o_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
-        pus_acc_3_o_in_axes3_x = (
-        pus_u_1_in_axes3_x - pus_acc_3_o_t*pus_c_3 - pus_e_2_in_axes3_x*pus_g_in_axes0_z
-        )
-        pus_acc_3_o_in_axes3_y = (
-        pus_u_1_in_axes3_y + pus_c_3*pus_g_in_axes0_z - pus_acc_3_o_t*pus_e_2_in_axes3_x
-        )
-        pus_acc_3_o_in_axes3_z = (
-        pus_u_1_in_axes3_z + pus_g_in_axes0_x*pus_s_2 - pus_c_2*pus_g_in_axes0_y
-        )
+        pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x - pus_g_in_axes3_x
+        pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y - pus_g_in_axes3_y
+        pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z - pus_g_in_axes3_z
+        # (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
+        pus_mu_3_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y
+        pus_mu_3_t_3 = pus_qd_3*pus_qd_3
+        pus_mu_3_t_4 = pus_J_3_in_spec3_yz*(pus_mu_3_t_2 - pus_mu_3_t_3)
+        pus_mu_3_t_5 = pus_J_3_in_spec3_xy*(pus_mu_3_t - pus_mu_3_t_3)
+        pus_mu_3_t_6 = pus_J_3_in_spec3_xz*(pus_mu_3_t - pus_mu_3_t_2)
         # (pus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
-        pus_mu_3_o_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y
-        pus_mu_3_o_t_3 = pus_qd_3*pus_qd_3
         pus_mu_3_o_in_axes3_x = (
         pus_B_3_o_in_axes3_yx*pus_J_3_in_spec3_xy + pus_B_3_o_in_axes3_zx*pus_J_3_in_spec3_xz +
-            pus_B_3_o_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_yz*(pus_mu_3_o_t_2 -
-            pus_mu_3_o_t_3) - pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_t -
-            pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_y - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_z
+            pus_B_3_o_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_mu_3_t_4 -
+            pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_t - pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_z
         )
         pus_mu_3_o_in_axes3_y = (
         pus_B_3_o_in_axes3_xy*pus_J_3_in_spec3_yz +
             pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_in_axes3_y +
-            pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_y -
+            pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_y - pus_mu_3_t_5 -
             pus_B_3_o_in_axes3_zx*pus_Sigma_3_in_axes3_xx -
-            pus_B_3_o_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_o_t -
-            pus_mu_3_o_t_3) - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_x
+            pus_B_3_o_in_axes3_zy*pus_J_3_in_spec3_xz - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_x
         )
         pus_mu_3_o_in_axes3_z = (
         pus_B_3_o_in_axes3_yx*pus_Sigma_3_in_axes3_xx + pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_z
-            + pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_x -
+            + pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_x - pus_mu_3_t_6 -
             pus_B_3_o_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_o_t -
-            pus_J_3_in_spec3_xz*(pus_mu_3_o_t - pus_mu_3_o_t_2) -
             pus_J_3_in_spec3_yz*pus_alpha_2_o_in_axes3_y
         )
         # (pus-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         pus_G_o_t = (
-        pus_w_2_in_axes3_z*(pus_c_3*pus_mu_3_o_in_axes3_y -
+        pus_w_2_in_axes3_z*(pus_J_3_t_10*pus_mu_3_o_in_axes3_y -
             pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x)
         )
         pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y
+        # (pus-c) leg force on the platform without actuation and without the mass at the connection point
+        pus_c_t = pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3)
+        pus_c_t_2 = pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3)
+        pus_c_t_3 = pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2)
         # (pus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         pus_c_o_in_axes3_x = (
-        pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 +
-            pus_mu_3_o_t_3) - pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -
+        pus_c_t + pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z -
+            pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -
             pus_w_1_in_axes3_x*(pus_acc_1_o_in_axes0_x*pus_link1_mass -
             pus_G_o_in_axes3_y*pus_e_1_in_axes3_y - pus_G_o_t*pus_s_2)
         )
         pus_c_o_in_axes3_y = (
-        -pus_G_o_in_axes3_y - pus_B_3_o_in_axes3_yx*pus_h_3_in_spec3_x -
-            pus_alpha_2_o_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_o_t +
-            pus_mu_3_o_t_3)
+        -pus_G_o_in_axes3_y - pus_c_t_2 - pus_B_3_o_in_axes3_yx*pus_h_3_in_spec3_x -
+            pus_alpha_2_o_t*pus_h_3_in_spec3_y
         )
         pus_c_o_in_axes3_z = (
-        pus_G_o_t + pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_o_t +
-            pus_mu_3_o_t_2) - pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x
+        pus_G_o_t + pus_c_t_3 + pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z -
+            pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x
         )
         # (pus-U) velocity and gravity terms of the leg force
         pus_U_x = (
@@ -3136,7 +3103,7 @@ def _run_Z(m, X, V):
         pus_Z_a_t_2 = pus_U_x*pus_q_z - pus_U_z*pus_q_x
         pus_Z_a_t_3 = pus_U_y*pus_q_x - pus_U_x*pus_q_y
         ok = (
-        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -3217,7 +3184,7 @@ def _run_H(m, X):
             pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size_t,
             pus_size_t_2,
         ) = k
-        # (pus-S) from the base point to the connection point
+        # (pus-J_3) inertia tensor of link 3 about the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -3227,34 +3194,34 @@ def _run_H(m, X):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_z + t_z - pus_base_point_z
-        pus_S_in_axes0_x = (
-        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
+        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
+        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
+        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
+        pus_J_3_t_4 = (
+        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+            pus_J_3_t_3*pus_base_frame_zx
         )
-        pus_S_in_axes0_y = (
-        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        pus_J_3_t_5 = (
+        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+            pus_J_3_t_3*pus_base_frame_zy
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
-        # (pus-root_2) root, with the sign of the branch
-        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
-        # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
-        # (pus-w_1) reciprocal vector 1
+        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
+        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
+        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
+        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
+        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
         pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
         )
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
+        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        # (pus-w_1) reciprocal vector 1
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
         axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
@@ -3262,36 +3229,36 @@ def _run_H(m, X):
         pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_base_frame_xz*pus_c_3
+            pus_J_3_t_10*pus_base_frame_xz
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_base_frame_yz*pus_c_3
+            pus_J_3_t_10*pus_base_frame_yz
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_base_frame_zz*pus_c_3
+            pus_J_3_t_10*pus_base_frame_zz
         )
-        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
+        axis_x_pus_axes3_x = (
+        axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
+        )
+        axis_x_pus_axes3_y = (
+        axis_y_pus_axes3_z*axis_z_pus_axes3_x - axis_y_pus_axes3_x*axis_z_pus_axes3_z
+        )
+        axis_x_pus_axes3_z = (
+        axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
+        )
+        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
-        pus_w_1_x = (
-        pus_w_1_in_axes3_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
-            axis_y_pus_axes3_z*axis_z_pus_axes3_y)
-        )
-        pus_w_1_y = (
-        pus_w_1_in_axes3_x*(axis_y_pus_axes3_z*axis_z_pus_axes3_x -
-            axis_y_pus_axes3_x*axis_z_pus_axes3_z)
-        )
-        pus_w_1_z = (
-        pus_w_1_in_axes3_x*(axis_y_pus_axes3_x*axis_z_pus_axes3_y -
-            axis_y_pus_axes3_y*axis_z_pus_axes3_x)
-        )
+        pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
+        pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
+        pus_w_1_z = axis_x_pus_axes3_z*pus_w_1_in_axes3_x
         # (pus-H_a_1) moment of the column's unit force about the platform origin
         pus_H_a_1_x = pus_q_y*pus_w_1_z - pus_q_z*pus_w_1_y
         pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z
         pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x
         ok = (
-        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_e_1_in_axes3_x) > _TOLERANCE * 1.0)
         )
         # (pus-w_1) reciprocal vector 1
@@ -3305,7 +3272,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1233 mul, 933 add, 18 div, 12 sqrt, 0 trig
+# required: 1215 mul, 915 add, 18 div, 12 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3379,9 +3346,22 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -3394,21 +3374,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
-        f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
-        f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
-        f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*m_star - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -3462,7 +3430,7 @@ def _run_required(m, X, V, A):
             pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
             pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
-        # (pus-S) from the base point to the connection point
+        # (pus-J_3) inertia tensor of link 3 about the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -3472,29 +3440,33 @@ def _run_required(m, X, V, A):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_z + t_z - pus_base_point_z
-        pus_S_in_axes0_x = (
-        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
+        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
+        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
+        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
+        pus_J_3_t_4 = (
+        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+            pus_J_3_t_3*pus_base_frame_zx
         )
-        pus_S_in_axes0_y = (
-        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        pus_J_3_t_5 = (
+        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+            pus_J_3_t_3*pus_base_frame_zy
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
-        # (pus-root_2) root, with the sign of the branch
-        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
+        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
+        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
+        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
+        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
+        )
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
+        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
+        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -3503,12 +3475,8 @@ def _run_required(m, X, V, A):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
         axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
@@ -3516,15 +3484,15 @@ def _run_required(m, X, V, A):
         pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_base_frame_xz*pus_c_3
+            pus_J_3_t_10*pus_base_frame_xz
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_base_frame_yz*pus_c_3
+            pus_J_3_t_10*pus_base_frame_yz
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_base_frame_zz*pus_c_3
+            pus_J_3_t_10*pus_base_frame_zz
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -3535,7 +3503,7 @@ def _run_required(m, X, V, A):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
+        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
         pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
@@ -3560,19 +3528,15 @@ def _run_required(m, X, V, A):
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
         pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
-        pus_omega_2_in_axes3_y = -pus_c_3*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_J_3_t_10*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
         pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
         pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
         pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y
-        # (pus-a_p) acceleration of the connection point without its centripetal part
-        pus_a_p_x = t_ddot_x + alpha_y*pus_q_z - alpha_z*pus_q_y
-        pus_a_p_y = t_ddot_y + alpha_z*pus_q_x - alpha_x*pus_q_z
-        pus_a_p_z = t_ddot_z + alpha_x*pus_q_y - alpha_y*pus_q_x
         # (pus-S_ddot) acceleration of the connection point
-        pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2
-        pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3
-        pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t
+        pus_S_ddot_x = t_ddot_x + B_p_xy*pus_q_y + B_p_xz*pus_q_z - W_p_t_4*pus_q_x
+        pus_S_ddot_y = t_ddot_y + B_p_yx*pus_q_x + B_p_yz*pus_q_z - W_p_t_5*pus_q_y
+        pus_S_ddot_z = t_ddot_z + B_p_zx*pus_q_x + B_p_zy*pus_q_y - W_p_t_6*pus_q_z
         pus_S_ddot_in_axes3_x = (
         axis_x_pus_axes3_x*pus_S_ddot_x + axis_x_pus_axes3_y*pus_S_ddot_y +
             axis_x_pus_axes3_z*pus_S_ddot_z
@@ -3586,15 +3550,15 @@ def _run_required(m, X, V, A):
             axis_z_pus_axes3_z*pus_S_ddot_z
         )
         # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
+        pus_bias_in_axes3_x = -pus_bias_t*pus_omega_2_in_axes3_y - pus_qd_3*pus_qd_3_t
+        pus_bias_in_axes3_y = pus_bias_t*pus_omega_2_in_axes3_x
         pus_bias_in_axes3_z = (
         pus_W_3_in_axes3_xz*pus_platform_joint_offset_x + pus_omega_2_in_axes3_x*pus_qd_3_t
         )
         # (pus-rel) acceleration of the connection point left to the joint accelerations
-        pus_rel_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
-        pus_rel_in_axes3_x = (
-        pus_S_ddot_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_t + pus_qd_3*pus_qd_3_t
-        )
-        pus_rel_in_axes3_y = pus_S_ddot_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_t
+        pus_rel_in_axes3_x = pus_S_ddot_in_axes3_x - pus_bias_in_axes3_x
+        pus_rel_in_axes3_y = pus_S_ddot_in_axes3_y - pus_bias_in_axes3_y
         pus_rel_in_axes3_z = pus_S_ddot_in_axes3_z - pus_bias_in_axes3_z
         # (pus-qdd_1) acceleration of joint 1
         pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x
@@ -3604,7 +3568,7 @@ def _run_required(m, X, V, A):
         pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         # (pus-alpha_2) angular acceleration of link 2
         pus_alpha_2_t = pus_e_2_in_axes3_x*pus_qdd_2_t
-        pus_alpha_2_in_axes3_y = pus_c_3*pus_qdd_2_t
+        pus_alpha_2_in_axes3_y = pus_J_3_t_10*pus_qdd_2_t
         # (pus-alpha_3) angular acceleration of link 3
         pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t
         pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz
@@ -3617,56 +3581,60 @@ def _run_required(m, X, V, A):
         pus_acc_1_in_axes0_x = pus_qdd_1 - pus_g_in_axes0_x
         # (pus-acc_3) acceleration of the reference point of link 3, less gravity
         pus_acc_3_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
-        pus_acc_3_in_axes3_x = (
-        pus_S_ddot_in_axes3_x - pus_acc_3_t*pus_c_3 - pus_e_2_in_axes3_x*pus_g_in_axes0_z
-        )
-        pus_acc_3_in_axes3_y = (
-        pus_S_ddot_in_axes3_y + pus_c_3*pus_g_in_axes0_z - pus_acc_3_t*pus_e_2_in_axes3_x
-        )
-        pus_acc_3_in_axes3_z = (
-        pus_S_ddot_in_axes3_z + pus_g_in_axes0_x*pus_s_2 - pus_c_2*pus_g_in_axes0_y
-        )
+        pus_g_in_axes3_z = pus_c_2*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
+        pus_g_in_axes3_x = pus_J_3_t_10*pus_acc_3_t + pus_e_2_in_axes3_x*pus_g_in_axes0_z
+        pus_g_in_axes3_y = pus_acc_3_t*pus_e_2_in_axes3_x - pus_J_3_t_10*pus_g_in_axes0_z
+        pus_acc_3_in_axes3_x = pus_S_ddot_in_axes3_x - pus_g_in_axes3_x
+        pus_acc_3_in_axes3_y = pus_S_ddot_in_axes3_y - pus_g_in_axes3_y
+        pus_acc_3_in_axes3_z = pus_S_ddot_in_axes3_z - pus_g_in_axes3_z
         # (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points
         pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
         pus_mu_3_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y
         pus_mu_3_t_3 = pus_qd_3*pus_qd_3
+        pus_mu_3_t_4 = pus_J_3_in_spec3_yz*(pus_mu_3_t_2 - pus_mu_3_t_3)
+        pus_mu_3_t_5 = pus_J_3_in_spec3_xy*(pus_mu_3_t - pus_mu_3_t_3)
+        pus_mu_3_t_6 = pus_J_3_in_spec3_xz*(pus_mu_3_t - pus_mu_3_t_2)
         pus_mu_3_in_axes3_x = (
         pus_B_3_in_axes3_yx*pus_J_3_in_spec3_xy + pus_B_3_in_axes3_zx*pus_J_3_in_spec3_xz +
-            pus_B_3_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_yz*(pus_mu_3_t_2 -
-            pus_mu_3_t_3) - pus_Sigma_3_in_axes3_zz*pus_alpha_2_t -
-            pus_acc_3_in_axes3_y*pus_h_3_in_spec3_y - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_z
+            pus_B_3_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_mu_3_t_4 -
+            pus_Sigma_3_in_axes3_zz*pus_alpha_2_t - pus_acc_3_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_acc_3_in_axes3_z*pus_h_3_in_spec3_z
         )
         pus_mu_3_in_axes3_y = (
         pus_B_3_in_axes3_xy*pus_J_3_in_spec3_yz + pus_Sigma_3_in_axes3_zz*pus_alpha_2_in_axes3_y +
-            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_y - pus_B_3_in_axes3_zx*pus_Sigma_3_in_axes3_xx
-            - pus_B_3_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_t -
-            pus_mu_3_t_3) - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_x
+            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_y - pus_mu_3_t_5 -
+            pus_B_3_in_axes3_zx*pus_Sigma_3_in_axes3_xx - pus_B_3_in_axes3_zy*pus_J_3_in_spec3_xz
+            - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_x
         )
         pus_mu_3_in_axes3_z = (
         pus_B_3_in_axes3_yx*pus_Sigma_3_in_axes3_xx + pus_acc_3_in_axes3_x*pus_h_3_in_spec3_z +
-            pus_acc_3_in_axes3_y*pus_h_3_in_spec3_x - pus_B_3_in_axes3_xy*pus_Sigma_3_in_axes3_yy
-            - pus_J_3_in_spec3_xy*pus_alpha_2_t - pus_J_3_in_spec3_xz*(pus_mu_3_t - pus_mu_3_t_2)
-            - pus_J_3_in_spec3_yz*pus_alpha_2_in_axes3_y
+            pus_acc_3_in_axes3_y*pus_h_3_in_spec3_x - pus_mu_3_t_6 -
+            pus_B_3_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_t -
+            pus_J_3_in_spec3_yz*pus_alpha_2_in_axes3_y
         )
         # (pus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         pus_G_t = (
-        pus_w_2_in_axes3_z*(pus_c_3*pus_mu_3_in_axes3_y - pus_e_2_in_axes3_x*pus_mu_3_in_axes3_x)
+        pus_w_2_in_axes3_z*(pus_J_3_t_10*pus_mu_3_in_axes3_y -
+            pus_e_2_in_axes3_x*pus_mu_3_in_axes3_x)
         )
         pus_G_in_axes3_y = pus_mu_3_in_axes3_z*pus_w_3_in_axes3_y
         # (pus-c) leg force on the platform without actuation and without the mass at the connection point
+        pus_c_t = pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3)
+        pus_c_t_2 = pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3)
+        pus_c_t_3 = pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2)
         pus_c_in_axes3_x = (
-        pus_B_3_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3)
-            - pus_alpha_2_in_axes3_y*pus_h_3_in_spec3_y -
+        pus_c_t + pus_B_3_in_axes3_xy*pus_h_3_in_spec3_z -
+            pus_alpha_2_in_axes3_y*pus_h_3_in_spec3_y -
             pus_w_1_in_axes3_x*(pus_acc_1_in_axes0_x*pus_link1_mass -
             pus_G_in_axes3_y*pus_e_1_in_axes3_y - pus_G_t*pus_s_2)
         )
         pus_c_in_axes3_y = (
-        -pus_G_in_axes3_y - pus_B_3_in_axes3_yx*pus_h_3_in_spec3_x -
-            pus_alpha_2_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3)
+        -pus_G_in_axes3_y - pus_c_t_2 - pus_B_3_in_axes3_yx*pus_h_3_in_spec3_x -
+            pus_alpha_2_t*pus_h_3_in_spec3_y
         )
         pus_c_in_axes3_z = (
-        pus_G_t + pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_t +
-            pus_mu_3_t_2) - pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x
+        pus_G_t + pus_c_t_3 + pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z -
+            pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x
         )
         pus_c_x = (
         axis_x_pus_axes3_x*pus_c_in_axes3_x + axis_y_pus_axes3_x*pus_c_in_axes3_y +
@@ -3689,7 +3657,7 @@ def _run_required(m, X, V, A):
         pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z
         pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x
         ok = (
-        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -3779,47 +3747,51 @@ def _run_inverse_kinematics(m, X):
             pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size_t,
             pus_size_t_2,
         ) = k
-        # (pus-S) from the base point to the connection point
-        pus_S_x = (
-        t_x + R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z -
-            pus_base_point_x
+        # (pus-J_3) inertia tensor of link 3 about the connection point
+        pus_q_x = (
+        R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        pus_S_y = (
-        t_y + R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z -
-            pus_base_point_y
+        pus_q_y = (
+        R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        pus_S_z = (
-        t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z -
-            pus_base_point_z
+        pus_q_z = (
+        R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_in_axes0_x = (
-        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
+        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
+        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
+        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
+        pus_J_3_t_4 = (
+        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+            pus_J_3_t_3*pus_base_frame_zx
         )
-        pus_S_in_axes0_y = (
-        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        pus_J_3_t_5 = (
+        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+            pus_J_3_t_3*pus_base_frame_zy
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
+        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
+        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
+        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
+        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
+        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
+        )
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
-        pus_q_1 = pus_S_in_axes0_x + pus_q_1_t
-        # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
-        # (pus-root_2) root, with the sign of the branch
-        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        pus_q_1 = pus_J_3_t_4 + pus_q_1_t
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
+        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
         # (pus-q_2) displacement of joint 2
-        inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_q_2 = (
-        atan2(inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2, -inv_pus_rho2_2*pus_q_1_t*pus_root_2)
-        )
+        pus_q_2 = atan2(pus_s_2, pus_c_2)
         # (pus-q_3) displacement of joint 3
-        pus_q_3 = (
-        atan2(-inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz),
-            inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2)
+        pus_q_3 = atan2(-pus_e_2_in_axes3_x, pus_J_3_t_10)
+        ok = (
+        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2)
         )
-        ok = ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2)
         # (pus-q_1) displacement of joint 1
         out_q[_q_pus[0][leg]] = pus_q_1
         # (pus-q_2) displacement of joint 2
@@ -3829,7 +3801,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 456 mul, 294 add, 18 div, 12 sqrt, 0 trig
+# joint_rates: 468 mul, 294 add, 18 div, 12 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -3892,7 +3864,7 @@ def _run_joint_rates(m, X, V):
             pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
             pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
-        # (pus-S) from the base point to the connection point
+        # (pus-J_3) inertia tensor of link 3 about the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -3902,79 +3874,91 @@ def _run_joint_rates(m, X, V):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_z + t_z - pus_base_point_z
-        pus_S_in_axes0_x = (
-        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
+        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
+        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
+        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
+        pus_J_3_t_4 = (
+        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+            pus_J_3_t_3*pus_base_frame_zx
         )
-        pus_S_in_axes0_y = (
-        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        pus_J_3_t_5 = (
+        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+            pus_J_3_t_3*pus_base_frame_zy
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
-        # (pus-root_2) root, with the sign of the branch
-        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
-        # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
-        # (pus-S_dot) velocity of the connection point
-        pus_S_dot_x = t_dot_x + omega_y*pus_q_z - omega_z*pus_q_y
-        pus_S_dot_y = t_dot_y + omega_z*pus_q_x - omega_x*pus_q_z
-        pus_S_dot_z = t_dot_z + omega_x*pus_q_y - omega_y*pus_q_x
-        # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
-        # (pus-w_1) reciprocal vector 1
-        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
-        # (pus-qd_1) rate of joint 1
+        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
+        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
+        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
+        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
+        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
         pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
         )
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
+        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        # (pus-S_dot) velocity of the connection point
+        pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
+        pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
+        pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x
+        pus_S_dot_x = pus_S_dot_t + t_dot_x
+        pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
+        pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
+        # (pus-w_1) reciprocal vector 1
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
         axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
         pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
-        pus_qd_1_t = pus_e_2_in_axes3_x*pus_s_2
+        pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
-        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_qd_1_t -
-            pus_base_frame_xz*pus_c_3
+        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
+            pus_J_3_t_10*pus_base_frame_xz
         )
         axis_y_pus_axes3_y = (
-        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_qd_1_t -
-            pus_base_frame_yz*pus_c_3
+        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
+            pus_J_3_t_10*pus_base_frame_yz
         )
         axis_y_pus_axes3_z = (
-        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_qd_1_t -
-            pus_base_frame_zz*pus_c_3
+        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
+            pus_J_3_t_10*pus_base_frame_zz
         )
+        axis_x_pus_axes3_x = (
+        axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
+        )
+        axis_x_pus_axes3_y = (
+        axis_y_pus_axes3_z*axis_z_pus_axes3_x - axis_y_pus_axes3_x*axis_z_pus_axes3_z
+        )
+        axis_x_pus_axes3_z = (
+        axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
+        )
+        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
+        pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
+        # (pus-qd_1) rate of joint 1
         pus_qd_1 = (
-        (pus_S_dot_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
-            axis_y_pus_axes3_z*axis_z_pus_axes3_y) +
-            pus_S_dot_y*(axis_y_pus_axes3_z*axis_z_pus_axes3_x -
-            axis_y_pus_axes3_x*axis_z_pus_axes3_z) +
-            pus_S_dot_z*(axis_y_pus_axes3_x*axis_z_pus_axes3_y -
-            axis_y_pus_axes3_y*axis_z_pus_axes3_x))/pus_e_1_in_axes3_x
+        pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
+            axis_x_pus_axes3_z*pus_S_dot_z)
         )
         # (pus-qd_2) rate of joint 2
         pus_qd_2 = (
-        (axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
-            axis_z_pus_axes3_z*pus_S_dot_z + pus_qd_1*pus_s_2)/pus_v_2_in_axes3_z
+        pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_qd_1*pus_s_2)
         )
         # (pus-qd_3) rate of joint 3
-        pus_qd_3 = (
-        pus_w_3_in_axes3_y*(axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
-            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1)
+        pus_qd_3_t = (
+        axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
+            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1
         )
+        pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         ok = (
-        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -3987,7 +3971,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 678 mul, 444 add, 18 div, 12 sqrt, 0 trig
+# joint_accelerations: 666 mul, 435 add, 18 div, 12 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -4054,6 +4038,23 @@ def _run_joint_accelerations(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         inv_pus_size_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
@@ -4063,7 +4064,7 @@ def _run_joint_accelerations(m, X, V, A):
             pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
             pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
-        # (pus-S) from the base point to the connection point
+        # (pus-J_3) inertia tensor of link 3 about the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -4073,29 +4074,33 @@ def _run_joint_accelerations(m, X, V, A):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_z + t_z - pus_base_point_z
-        pus_S_in_axes0_x = (
-        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
+        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
+        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
+        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
+        pus_J_3_t_4 = (
+        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+            pus_J_3_t_3*pus_base_frame_zx
         )
-        pus_S_in_axes0_y = (
-        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        pus_J_3_t_5 = (
+        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+            pus_J_3_t_3*pus_base_frame_zy
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
-        # (pus-root_2) root, with the sign of the branch
-        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
+        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
+        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
+        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
+        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
+        )
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
+        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
+        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -4104,33 +4109,24 @@ def _run_joint_accelerations(m, X, V, A):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
-        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
-        pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
-        # (pus-w_2) reciprocal vector 2
-        pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
-        # (pus-qd_1) rate of joint 1
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
         axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
         pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
-        pus_qd_1_t = pus_e_2_in_axes3_x*pus_s_2
+        pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
-        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_qd_1_t -
-            pus_base_frame_xz*pus_c_3
+        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
+            pus_J_3_t_10*pus_base_frame_xz
         )
         axis_y_pus_axes3_y = (
-        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_qd_1_t -
-            pus_base_frame_yz*pus_c_3
+        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
+            pus_J_3_t_10*pus_base_frame_yz
         )
         axis_y_pus_axes3_z = (
-        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_qd_1_t -
-            pus_base_frame_zz*pus_c_3
+        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
+            pus_J_3_t_10*pus_base_frame_zz
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -4141,6 +4137,11 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
+        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
+        pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
+        # (pus-qd_1) rate of joint 1
         pus_qd_1 = (
         pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
             axis_x_pus_axes3_z*pus_S_dot_z)
@@ -4158,35 +4159,36 @@ def _run_joint_accelerations(m, X, V, A):
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
         pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
-        pus_omega_2_in_axes3_y = -pus_c_3*pus_qd_2
-        # (pus-a_p) acceleration of the connection point without its centripetal part
-        pus_a_p_x = t_ddot_x + alpha_y*pus_q_z - alpha_z*pus_q_y
-        pus_a_p_y = t_ddot_y + alpha_z*pus_q_x - alpha_x*pus_q_z
-        pus_a_p_z = t_ddot_z + alpha_x*pus_q_y - alpha_y*pus_q_x
+        pus_omega_2_in_axes3_y = -pus_J_3_t_10*pus_qd_2
+        # (pus-W_3) centripetal tensor of link 3
+        pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
         # (pus-S_ddot) acceleration of the connection point
-        pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2
-        pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3
-        pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t
+        pus_S_ddot_x = t_ddot_x + B_p_xy*pus_q_y + B_p_xz*pus_q_z - W_p_t_4*pus_q_x
+        pus_S_ddot_y = t_ddot_y + B_p_yx*pus_q_x + B_p_yz*pus_q_z - W_p_t_5*pus_q_y
+        pus_S_ddot_z = t_ddot_z + B_p_zx*pus_q_x + B_p_zy*pus_q_y - W_p_t_6*pus_q_z
+        pus_S_ddot_in_axes3_x = (
+        axis_x_pus_axes3_x*pus_S_ddot_x + axis_x_pus_axes3_y*pus_S_ddot_y +
+            axis_x_pus_axes3_z*pus_S_ddot_z
+        )
+        pus_S_ddot_in_axes3_y = (
+        axis_y_pus_axes3_x*pus_S_ddot_x + axis_y_pus_axes3_y*pus_S_ddot_y +
+            axis_y_pus_axes3_z*pus_S_ddot_z
+        )
+        pus_S_ddot_in_axes3_z = (
+        axis_z_pus_axes3_x*pus_S_ddot_x + axis_z_pus_axes3_y*pus_S_ddot_y +
+            axis_z_pus_axes3_z*pus_S_ddot_z
+        )
         # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
+        pus_bias_in_axes3_x = -pus_bias_t*pus_omega_2_in_axes3_y - pus_qd_3*pus_qd_3_t
+        pus_bias_in_axes3_y = pus_bias_t*pus_omega_2_in_axes3_x
         pus_bias_in_axes3_z = (
-        pus_omega_2_in_axes3_x*pus_qd_3_t +
-            pus_omega_2_in_axes3_x*pus_platform_joint_offset_x*pus_qd_3
+        pus_W_3_in_axes3_xz*pus_platform_joint_offset_x + pus_omega_2_in_axes3_x*pus_qd_3_t
         )
         # (pus-rel) acceleration of the connection point left to the joint accelerations
-        pus_rel_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
-        pus_rel_in_axes3_x = (
-        axis_x_pus_axes3_x*pus_S_ddot_x + axis_x_pus_axes3_y*pus_S_ddot_y +
-            axis_x_pus_axes3_z*pus_S_ddot_z + pus_omega_2_in_axes3_y*pus_rel_t +
-            pus_qd_3*pus_qd_3_t
-        )
-        pus_rel_in_axes3_y = (
-        axis_y_pus_axes3_x*pus_S_ddot_x + axis_y_pus_axes3_y*pus_S_ddot_y +
-            axis_y_pus_axes3_z*pus_S_ddot_z - pus_omega_2_in_axes3_x*pus_rel_t
-        )
-        pus_rel_in_axes3_z = (
-        axis_z_pus_axes3_x*pus_S_ddot_x + axis_z_pus_axes3_y*pus_S_ddot_y +
-            axis_z_pus_axes3_z*pus_S_ddot_z - pus_bias_in_axes3_z
-        )
+        pus_rel_in_axes3_x = pus_S_ddot_in_axes3_x - pus_bias_in_axes3_x
+        pus_rel_in_axes3_y = pus_S_ddot_in_axes3_y - pus_bias_in_axes3_y
+        pus_rel_in_axes3_z = pus_S_ddot_in_axes3_z - pus_bias_in_axes3_z
         # (pus-qdd_1) acceleration of joint 1
         pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x
         # (pus-qdd_2) acceleration of joint 2
@@ -4194,7 +4196,7 @@ def _run_joint_accelerations(m, X, V, A):
         # (pus-qdd_3) acceleration of joint 3
         pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         ok = (
-        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -4207,7 +4209,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 1086 mul, 798 add, 18 div, 12 sqrt, 0 trig
+# legs: 1074 mul, 789 add, 18 div, 12 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -4275,6 +4277,23 @@ def _run_legs(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         inv_pus_size_t, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz, pus_J_3_in_spec3_yz,
@@ -4288,7 +4307,7 @@ def _run_legs(m, X, V, A):
             pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2,
             pus_w_3_in_axes3_y,
         ) = k
-        # (pus-S) from the base point to the connection point
+        # (pus-J_3) inertia tensor of link 3 about the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -4298,29 +4317,33 @@ def _run_legs(m, X, V, A):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_z + t_z - pus_base_point_z
-        pus_S_in_axes0_x = (
-        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
+        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
+        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
+        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
+        pus_J_3_t_4 = (
+        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+            pus_J_3_t_3*pus_base_frame_zx
         )
-        pus_S_in_axes0_y = (
-        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        pus_J_3_t_5 = (
+        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+            pus_J_3_t_3*pus_base_frame_zy
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
-        # (pus-root_2) root, with the sign of the branch
-        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
+        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
+        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
+        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
+        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
+        )
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
+        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
+        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -4329,12 +4352,8 @@ def _run_legs(m, X, V, A):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
         axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
@@ -4342,15 +4361,15 @@ def _run_legs(m, X, V, A):
         pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_base_frame_xz*pus_c_3
+            pus_J_3_t_10*pus_base_frame_xz
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_base_frame_yz*pus_c_3
+            pus_J_3_t_10*pus_base_frame_yz
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_base_frame_zz*pus_c_3
+            pus_J_3_t_10*pus_base_frame_zz
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -4361,7 +4380,7 @@ def _run_legs(m, X, V, A):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
+        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
         pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
@@ -4386,19 +4405,15 @@ def _run_legs(m, X, V, A):
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
         pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
-        pus_omega_2_in_axes3_y = -pus_c_3*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_J_3_t_10*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
         pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
         pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
         pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y
-        # (pus-a_p) acceleration of the connection point without its centripetal part
-        pus_a_p_x = t_ddot_x + alpha_y*pus_q_z - alpha_z*pus_q_y
-        pus_a_p_y = t_ddot_y + alpha_z*pus_q_x - alpha_x*pus_q_z
-        pus_a_p_z = t_ddot_z + alpha_x*pus_q_y - alpha_y*pus_q_x
         # (pus-S_ddot) acceleration of the connection point
-        pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2
-        pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3
-        pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t
+        pus_S_ddot_x = t_ddot_x + B_p_xy*pus_q_y + B_p_xz*pus_q_z - W_p_t_4*pus_q_x
+        pus_S_ddot_y = t_ddot_y + B_p_yx*pus_q_x + B_p_yz*pus_q_z - W_p_t_5*pus_q_y
+        pus_S_ddot_z = t_ddot_z + B_p_zx*pus_q_x + B_p_zy*pus_q_y - W_p_t_6*pus_q_z
         pus_S_ddot_in_axes3_x = (
         axis_x_pus_axes3_x*pus_S_ddot_x + axis_x_pus_axes3_y*pus_S_ddot_y +
             axis_x_pus_axes3_z*pus_S_ddot_z
@@ -4412,15 +4427,15 @@ def _run_legs(m, X, V, A):
             axis_z_pus_axes3_z*pus_S_ddot_z
         )
         # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
+        pus_bias_in_axes3_x = -pus_bias_t*pus_omega_2_in_axes3_y - pus_qd_3*pus_qd_3_t
+        pus_bias_in_axes3_y = pus_bias_t*pus_omega_2_in_axes3_x
         pus_bias_in_axes3_z = (
         pus_W_3_in_axes3_xz*pus_platform_joint_offset_x + pus_omega_2_in_axes3_x*pus_qd_3_t
         )
         # (pus-rel) acceleration of the connection point left to the joint accelerations
-        pus_rel_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
-        pus_rel_in_axes3_x = (
-        pus_S_ddot_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_t + pus_qd_3*pus_qd_3_t
-        )
-        pus_rel_in_axes3_y = pus_S_ddot_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_t
+        pus_rel_in_axes3_x = pus_S_ddot_in_axes3_x - pus_bias_in_axes3_x
+        pus_rel_in_axes3_y = pus_S_ddot_in_axes3_y - pus_bias_in_axes3_y
         pus_rel_in_axes3_z = pus_S_ddot_in_axes3_z - pus_bias_in_axes3_z
         # (pus-qdd_1) acceleration of joint 1
         pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x
@@ -4430,7 +4445,7 @@ def _run_legs(m, X, V, A):
         pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         # (pus-alpha_2) angular acceleration of link 2
         pus_alpha_2_t = pus_e_2_in_axes3_x*pus_qdd_2_t
-        pus_alpha_2_in_axes3_y = pus_c_3*pus_qdd_2_t
+        pus_alpha_2_in_axes3_y = pus_J_3_t_10*pus_qdd_2_t
         # (pus-alpha_3) angular acceleration of link 3
         pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t
         pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz
@@ -4443,56 +4458,60 @@ def _run_legs(m, X, V, A):
         pus_acc_1_in_axes0_x = pus_qdd_1 - pus_g_in_axes0_x
         # (pus-acc_3) acceleration of the reference point of link 3, less gravity
         pus_acc_3_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
-        pus_acc_3_in_axes3_x = (
-        pus_S_ddot_in_axes3_x - pus_acc_3_t*pus_c_3 - pus_e_2_in_axes3_x*pus_g_in_axes0_z
-        )
-        pus_acc_3_in_axes3_y = (
-        pus_S_ddot_in_axes3_y + pus_c_3*pus_g_in_axes0_z - pus_acc_3_t*pus_e_2_in_axes3_x
-        )
-        pus_acc_3_in_axes3_z = (
-        pus_S_ddot_in_axes3_z + pus_g_in_axes0_x*pus_s_2 - pus_c_2*pus_g_in_axes0_y
-        )
+        pus_g_in_axes3_z = pus_c_2*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
+        pus_g_in_axes3_x = pus_J_3_t_10*pus_acc_3_t + pus_e_2_in_axes3_x*pus_g_in_axes0_z
+        pus_g_in_axes3_y = pus_acc_3_t*pus_e_2_in_axes3_x - pus_J_3_t_10*pus_g_in_axes0_z
+        pus_acc_3_in_axes3_x = pus_S_ddot_in_axes3_x - pus_g_in_axes3_x
+        pus_acc_3_in_axes3_y = pus_S_ddot_in_axes3_y - pus_g_in_axes3_y
+        pus_acc_3_in_axes3_z = pus_S_ddot_in_axes3_z - pus_g_in_axes3_z
         # (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points
         pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
         pus_mu_3_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y
         pus_mu_3_t_3 = pus_qd_3*pus_qd_3
+        pus_mu_3_t_4 = pus_J_3_in_spec3_yz*(pus_mu_3_t_2 - pus_mu_3_t_3)
+        pus_mu_3_t_5 = pus_J_3_in_spec3_xy*(pus_mu_3_t - pus_mu_3_t_3)
+        pus_mu_3_t_6 = pus_J_3_in_spec3_xz*(pus_mu_3_t - pus_mu_3_t_2)
         pus_mu_3_in_axes3_x = (
         pus_B_3_in_axes3_yx*pus_J_3_in_spec3_xy + pus_B_3_in_axes3_zx*pus_J_3_in_spec3_xz +
-            pus_B_3_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_yz*(pus_mu_3_t_2 -
-            pus_mu_3_t_3) - pus_Sigma_3_in_axes3_zz*pus_alpha_2_t -
-            pus_acc_3_in_axes3_y*pus_h_3_in_spec3_y - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_z
+            pus_B_3_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_mu_3_t_4 -
+            pus_Sigma_3_in_axes3_zz*pus_alpha_2_t - pus_acc_3_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_acc_3_in_axes3_z*pus_h_3_in_spec3_z
         )
         pus_mu_3_in_axes3_y = (
         pus_B_3_in_axes3_xy*pus_J_3_in_spec3_yz + pus_Sigma_3_in_axes3_zz*pus_alpha_2_in_axes3_y +
-            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_y - pus_B_3_in_axes3_zx*pus_Sigma_3_in_axes3_xx
-            - pus_B_3_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_t -
-            pus_mu_3_t_3) - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_x
+            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_y - pus_mu_3_t_5 -
+            pus_B_3_in_axes3_zx*pus_Sigma_3_in_axes3_xx - pus_B_3_in_axes3_zy*pus_J_3_in_spec3_xz
+            - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_x
         )
         pus_mu_3_in_axes3_z = (
         pus_B_3_in_axes3_yx*pus_Sigma_3_in_axes3_xx + pus_acc_3_in_axes3_x*pus_h_3_in_spec3_z +
-            pus_acc_3_in_axes3_y*pus_h_3_in_spec3_x - pus_B_3_in_axes3_xy*pus_Sigma_3_in_axes3_yy
-            - pus_J_3_in_spec3_xy*pus_alpha_2_t - pus_J_3_in_spec3_xz*(pus_mu_3_t - pus_mu_3_t_2)
-            - pus_J_3_in_spec3_yz*pus_alpha_2_in_axes3_y
+            pus_acc_3_in_axes3_y*pus_h_3_in_spec3_x - pus_mu_3_t_6 -
+            pus_B_3_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_t -
+            pus_J_3_in_spec3_yz*pus_alpha_2_in_axes3_y
         )
         # (pus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         pus_G_t = (
-        pus_w_2_in_axes3_z*(pus_c_3*pus_mu_3_in_axes3_y - pus_e_2_in_axes3_x*pus_mu_3_in_axes3_x)
+        pus_w_2_in_axes3_z*(pus_J_3_t_10*pus_mu_3_in_axes3_y -
+            pus_e_2_in_axes3_x*pus_mu_3_in_axes3_x)
         )
         pus_G_in_axes3_y = pus_mu_3_in_axes3_z*pus_w_3_in_axes3_y
         # (pus-c) leg force on the platform without actuation and without the mass at the connection point
+        pus_c_t = pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3)
+        pus_c_t_2 = pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3)
+        pus_c_t_3 = pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2)
         pus_c_in_axes3_x = (
-        pus_B_3_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3)
-            - pus_alpha_2_in_axes3_y*pus_h_3_in_spec3_y -
+        pus_c_t + pus_B_3_in_axes3_xy*pus_h_3_in_spec3_z -
+            pus_alpha_2_in_axes3_y*pus_h_3_in_spec3_y -
             pus_w_1_in_axes3_x*(pus_acc_1_in_axes0_x*pus_link1_mass -
             pus_G_in_axes3_y*pus_e_1_in_axes3_y - pus_G_t*pus_s_2)
         )
         pus_c_in_axes3_y = (
-        -pus_G_in_axes3_y - pus_B_3_in_axes3_yx*pus_h_3_in_spec3_x -
-            pus_alpha_2_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3)
+        -pus_G_in_axes3_y - pus_c_t_2 - pus_B_3_in_axes3_yx*pus_h_3_in_spec3_x -
+            pus_alpha_2_t*pus_h_3_in_spec3_y
         )
         pus_c_in_axes3_z = (
-        pus_G_t + pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_t +
-            pus_mu_3_t_2) - pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x
+        pus_G_t + pus_c_t_3 + pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z -
+            pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x
         )
         # (pus-c_true) leg force on the platform without actuation, the last link's mass included
         pus_c_true_in_axes3_x = pus_c_in_axes3_x - pus_acc_3_in_axes3_x*pus_link3_mass
@@ -4511,7 +4530,7 @@ def _run_legs(m, X, V, A):
             axis_z_pus_axes3_z*pus_c_true_in_axes3_z
         )
         ok = (
-        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -4571,12 +4590,14 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
+    gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
+        m_star*t_z)
     )
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
@@ -4590,58 +4611,59 @@ def _run_potential(m, X):
             pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
             pus_platform_point_z, pus_potential_t, pus_potential_t_2, pus_size_t, pus_size_t_2,
         ) = k
-        # (pus-S) from the base point to the connection point
-        pus_S_x = (
-        t_x + R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z -
-            pus_base_point_x
+        # (pus-J_3) inertia tensor of link 3 about the connection point
+        pus_q_x = (
+        R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        pus_S_y = (
-        t_y + R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z -
-            pus_base_point_y
+        pus_q_y = (
+        R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        pus_S_z = (
-        t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z -
-            pus_base_point_z
+        pus_q_z = (
+        R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_in_axes0_x = (
-        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
+        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
+        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
+        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
+        pus_J_3_t_4 = (
+        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+            pus_J_3_t_3*pus_base_frame_zx
         )
-        pus_S_in_axes0_y = (
-        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        pus_J_3_t_5 = (
+        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+            pus_J_3_t_3*pus_base_frame_zy
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-q_1) displacement of joint 1
-        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
-        pus_q_1 = pus_S_in_axes0_x + pus_q_1_t
-        # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
-        # (pus-root_2) root, with the sign of the branch
-        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = -inv_pus_rho2_2*pus_q_1_t*pus_root_2
-        # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
-        # (potential) potential energy
+        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
+        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
+        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
+        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
+        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
         pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
         )
-        pus_potential_t_3 = pus_e_2_in_axes3_x*pus_h_3_in_spec3_z - pus_c_3*pus_h_3_in_spec3_x
-        pus_potential_t_4 = (
-        pus_g_in_axes0_x*(pus_h_1_in_spec0_x + pus_link1_mass*(pus_b_in_axes0_x + pus_q_1) -
-            pus_c_2*pus_potential_t_3 - pus_h_3_in_spec3_y*pus_s_2) +
-            pus_g_in_axes0_y*(pus_h_1_in_spec0_y + pus_potential_t + pus_c_2*pus_h_3_in_spec3_y -
-            pus_potential_t_3*pus_s_2) + pus_g_in_axes0_z*(pus_h_1_in_spec0_z + pus_potential_t_2
-            + pus_c_3*pus_h_3_in_spec3_z + pus_e_2_in_axes3_x*pus_h_3_in_spec3_x)
-        )
-        ok = ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2)
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        pus_q_1 = pus_J_3_t_4 + pus_q_1_t
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
+        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        pus_d_Gamma_2_t = pus_e_2_in_axes3_x*pus_h_3_in_spec3_z - pus_J_3_t_10*pus_h_3_in_spec3_x
         # (potential) potential energy
-        potential_t_2 += pus_potential_t_4
+        pus_potential_t_3 = (
+        pus_g_in_axes0_x*(pus_h_1_in_spec0_x + pus_link1_mass*(pus_b_in_axes0_x + pus_q_1) -
+            pus_c_2*pus_d_Gamma_2_t - pus_h_3_in_spec3_y*pus_s_2) +
+            pus_g_in_axes0_y*(pus_h_1_in_spec0_y + pus_potential_t + pus_c_2*pus_h_3_in_spec3_y -
+            pus_d_Gamma_2_t*pus_s_2) + pus_g_in_axes0_z*(pus_h_1_in_spec0_z + pus_potential_t_2 +
+            pus_J_3_t_10*pus_h_3_in_spec3_z + pus_e_2_in_axes3_x*pus_h_3_in_spec3_x)
+        )
+        ok = (
+        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2)
+        )
+        # (potential) potential energy
+        potential_t_2 += pus_potential_t_3
     # (potential) potential energy
     potential = -potential_t - potential_t_2
     # (potential) potential energy
@@ -4709,7 +4731,7 @@ def _run_condition(m, X):
             pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
             pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2,
         ) = k
-        # (pus-S) from the base point to the connection point
+        # (pus-J_3) inertia tensor of link 3 about the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -4719,36 +4741,36 @@ def _run_condition(m, X):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_z + t_z - pus_base_point_z
-        pus_S_in_axes0_x = (
-        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
+        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
+        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
+        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
+        pus_J_3_t_4 = (
+        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+            pus_J_3_t_3*pus_base_frame_zx
         )
-        pus_S_in_axes0_y = (
-        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        pus_J_3_t_5 = (
+        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+            pus_J_3_t_3*pus_base_frame_zy
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
-        # (pus-root_2) root, with the sign of the branch
-        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
-        # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
-        # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
-        # (pus-w_1) reciprocal vector 1
+        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
+        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
+        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
+        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
+        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
         pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
         )
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
+        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
+        # (pus-w_1) reciprocal vector 1
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
         axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
@@ -4756,32 +4778,32 @@ def _run_condition(m, X):
         pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_base_frame_xz*pus_c_3
+            pus_J_3_t_10*pus_base_frame_xz
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_base_frame_yz*pus_c_3
+            pus_J_3_t_10*pus_base_frame_yz
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_base_frame_zz*pus_c_3
+            pus_J_3_t_10*pus_base_frame_zz
         )
-        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
+        axis_x_pus_axes3_x = (
+        axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
+        )
+        axis_x_pus_axes3_y = (
+        axis_y_pus_axes3_z*axis_z_pus_axes3_x - axis_y_pus_axes3_x*axis_z_pus_axes3_z
+        )
+        axis_x_pus_axes3_z = (
+        axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
+        )
+        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
-        pus_w_1_x = (
-        pus_w_1_in_axes3_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
-            axis_y_pus_axes3_z*axis_z_pus_axes3_y)
-        )
-        pus_w_1_y = (
-        pus_w_1_in_axes3_x*(axis_y_pus_axes3_z*axis_z_pus_axes3_x -
-            axis_y_pus_axes3_x*axis_z_pus_axes3_z)
-        )
-        pus_w_1_z = (
-        pus_w_1_in_axes3_x*(axis_y_pus_axes3_x*axis_z_pus_axes3_y -
-            axis_y_pus_axes3_y*axis_z_pus_axes3_x)
-        )
+        pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
+        pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
+        pus_w_1_z = axis_x_pus_axes3_z*pus_w_1_in_axes3_x
         # (pus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        pus_pivot_size = abs(pus_rho2_2)
+        pus_pivot_size = abs(pus_J_3_t_8)
         pus_pivot_size_2 = abs(pus_v_2_in_axes3_z)
         pus_pivot_size_3 = abs(pus_e_1_in_axes3_x)
         pus_least_pivots = (
@@ -4799,9 +4821,9 @@ def _run_condition(m, X):
         pus_spread_t_4 = (
         pus_spread_t*pus_spread_t + pus_spread_t_2*pus_spread_t_2 + pus_spread_t_3*pus_spread_t_3
         )
-        reached = reached & (pus_disc_1 >= 0.0)
+        reached = reached & (pus_J_3_t_7 >= 0.0)
         clear = (
-        clear & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        clear & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -4817,7 +4839,7 @@ def _run_condition(m, X):
         out_H[_H_pus[5][leg]] = pus_H_a_1_z
         # (pus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_pus[0][leg]] = pus_least_pivots
-        out_reach[_reach_pus[0][leg]] = pus_disc_1
+        out_reach[_reach_pus[0][leg]] = pus_J_3_t_7
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_pus)*spread_t
     # (spread) rms distance of the platform points from their centroid
@@ -5070,11 +5092,11 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[[0, 3, 6, 9, 12, 15]]
-    gap = q_actuated - q_of_inverse_kinematics_from_0
-    return (gap,)
+    residual = q_actuated - q_of_inverse_kinematics_from_0
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -5083,7 +5105,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

@@ -144,9 +144,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -208,6 +208,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -256,7 +280,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -266,7 +290,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -279,7 +303,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -296,16 +320,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -313,7 +337,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1443,10 +1476,28 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
-        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
-        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+    real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
+        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
+
+INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
+{
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real W_p_t = omega_x*omega_x;
+    const real omega_y = V[4*w + k];
+    const real W_p_t_2 = omega_y*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_t_3 = omega_z*omega_z;
+    v->W_p_t_4 = W_p_t_2 + W_p_t_3;
+    v->W_p_xy = omega_x*omega_y;
+    v->W_p_xz = omega_x*omega_z;
+    v->W_p_t_5 = W_p_t + W_p_t_3;
+    v->W_p_yz = omega_y*omega_z;
+    v->W_p_t_6 = W_p_t + W_p_t_2;
+}
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
@@ -1456,10 +1507,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_5 = X[5*w + k];
     const real X_6 = X[6*w + k];
     const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-    const real quaternion_scale = 2/quaternion_norm2;
-    const real quaternion_sx = X_3*quaternion_scale;
-    const real quaternion_sy = X_4*quaternion_scale;
-    const real quaternion_sz = X_5*quaternion_scale;
+    v->quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*v->quaternion_scale;
+    const real quaternion_sy = X_4*v->quaternion_scale;
+    const real quaternion_sz = X_5*v->quaternion_scale;
     const real quaternion_wx = X_6*quaternion_sx;
     const real quaternion_wy = X_6*quaternion_sy;
     const real quaternion_wz = X_6*quaternion_sz;
@@ -1469,53 +1520,22 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real quaternion_yy = X_4*quaternion_sy;
     const real quaternion_yz = X_4*quaternion_sz;
     const real quaternion_zz = X_5*quaternion_sz;
-    const real R_xx = 1 - quaternion_yy - quaternion_zz;
-    const real R_xy = quaternion_xy - quaternion_wz;
-    const real R_xz = quaternion_wy + quaternion_xz;
-    const real R_yx = quaternion_wz + quaternion_xy;
-    const real R_yy = 1 - quaternion_xx - quaternion_zz;
-    const real R_yz = quaternion_yz - quaternion_wx;
-    const real R_zx = quaternion_xz - quaternion_wy;
-    const real R_zy = quaternion_wx + quaternion_yz;
-    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    v->R_xx = 1 - quaternion_yy - quaternion_zz;
+    v->R_xy = quaternion_xy - quaternion_wz;
+    v->R_xz = quaternion_wy + quaternion_xz;
+    v->R_yx = quaternion_wz + quaternion_xy;
+    v->R_yy = 1 - quaternion_xx - quaternion_zz;
+    v->R_yz = quaternion_yz - quaternion_wx;
+    v->R_zx = quaternion_xz - quaternion_wy;
+    v->R_zy = quaternion_wx + quaternion_yz;
+    v->R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
-        R_xx*m->h_star_in_platform_x;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
-        R_yy*m->h_star_in_platform_y;
-    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
-        R_zz*m->h_star_in_platform_z;
-    v->quaternion_scale = quaternion_scale;
-    v->R_xx = R_xx;
-    v->R_xy = R_xy;
-    v->R_xz = R_xz;
-    v->R_yx = R_yx;
-    v->R_yy = R_yy;
-    v->R_yz = R_yz;
-    v->R_zx = R_zx;
-    v->R_zy = R_zy;
-    v->R_zz = R_zz;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
-    v->h_star_z = h_star_z;
-}
-
-INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
-{
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
-    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
-    v->omega_in_platform_x = omega_in_platform_x;
-    v->omega_in_platform_y = omega_in_platform_y;
-    v->omega_in_platform_z = omega_in_platform_z;
-}
-
-INLINE void stage_M_dynamics(const prepared *m, values *v)
-{
+    v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
+        v->R_xx*m->h_star_in_platform_x;
+    v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
+        v->R_yy*m->h_star_in_platform_y;
+    v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
+        v->R_zz*m->h_star_in_platform_z;
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
@@ -1527,23 +1547,31 @@ INLINE void stage_M_dynamics(const prepared *m, values *v)
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
-    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+    v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
-    v->J_star_xx = J_star_xx;
-    v->J_star_xy = J_star_xy;
-    v->J_star_xz = J_star_xz;
-    v->J_star_yy = J_star_yy;
-    v->J_star_yz = J_star_yz;
-    v->J_star_zz = J_star_zz;
+    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
+}
+
+INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
+{
+    /* (B_p) acceleration tensor of the platform */
+    const real alpha_z = A[5*w + k];
+    v->B_p_xy = v->W_p_xy - alpha_z;
+    const real alpha_y = A[4*w + k];
+    v->B_p_xz = alpha_y + v->W_p_xz;
+    v->B_p_yx = alpha_z + v->W_p_xy;
+    const real alpha_x = A[3*w + k];
+    v->B_p_yz = v->W_p_yz - alpha_x;
+    v->B_p_zx = v->W_p_xz - alpha_y;
+    v->B_p_zy = alpha_x + v->W_p_yz;
 }
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
@@ -1555,62 +1583,38 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
+    v->Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    v->Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    v->Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
-        v->R_xx*m->gravity_x;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
-        v->R_yy*m->gravity_y;
-    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
-        v->R_zz*m->gravity_z;
-    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
-        Z_q_t_2*v->omega_in_platform_z;
-    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
-        Z_q_t_3*v->omega_in_platform_x;
-    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
-        Z_q_t*v->omega_in_platform_y;
-    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
-        v->R_xz*Z_q_in_platform_z;
-    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
-        v->R_yz*Z_q_in_platform_z;
-    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
-        v->R_zz*Z_q_in_platform_z;
-    v->Z_p_x = Z_p_x;
-    v->Z_p_y = Z_p_y;
-    v->Z_p_z = Z_p_z;
-    v->Z_q_x = Z_q_x;
-    v->Z_q_y = Z_q_y;
-    v->Z_q_z = Z_q_z;
+    const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
+    const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
+    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
+        Z_q_t_2*omega_z;
+    v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
+        Z_q_t_3*omega_x;
+    v->Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x + Z_q_t_2*omega_x -
+        Z_q_t*omega_y;
 }
 
 typedef struct {
-    real rus_q_x, rus_q_y, rus_q_z, rus_rho2_1, rus_disc_1, rus_c_1, rus_s_1, rus_rho2_2, rus_c_2,
-        rus_s_2_t, rus_c_3, rus_e_1_in_axes3_x, rus_r_1_t, rus_r_1_in_axes1_z, rus_r_1_t_2,
-        rus_r_1_in_axes1_x, rus_r_1_in_axes3_z, rus_v_1_t_2, rus_v_1_t_3, rus_v_1_in_axes3_z,
-        inv_rus_v_1_t_2, rus_w_2_in_axes3_z, rus_qd_1_t, rus_qd_1_t_2, rus_qd_1_t_5, rus_qd_1_t_6,
-        rus_bias_t, rus_d_2_in_axes3_z, axis_z_rus_axes3_x, axis_z_rus_axes3_y, axis_z_rus_axes3_z,
-        axis_y_rus_axes3_x, axis_y_rus_axes3_y, axis_y_rus_axes3_z, rus_a_p_x, rus_a_p_y, rus_a_p_z,
-        rus_S_dot_t, rus_S_dot_t_2, rus_S_dot_t_3, rus_S_dot_x, rus_S_dot_y, rus_S_dot_z,
-        rus_S_ddot_x, rus_S_ddot_y, rus_S_ddot_z, rus_v_1_t, rus_w_1_t_7, rus_w_1_t_8, rus_w_1_t_9,
-        rus_H_a_1_x, rus_H_a_1_y, rus_H_a_1_z, rus_J_3_t_10, rus_J_3_t_11, rus_J_3_t_15, rus_J_3_t_17,
-        rus_d_alpha_3_in_axes3_xz, rus_d_alpha_3_t, rus_d_Gamma_2_in_axes3_z, rus_d_c_in_axes3_xx,
-        rus_d_c_in_axes3_xy, rus_d_c_in_axes3_xz, rus_d_c_in_axes3_yz, rus_S_x, rus_S_y, rus_S_z,
-        rus_Kd_1, rus_Kc_1, rus_Ks_1, rus_root_1, inv_rus_rho2_1, rus_xi_1_t, rus_x_2_in_axes1_x,
-        rus_root_2, inv_rus_rho2_2, axis_x_rus_axes3_x, axis_x_rus_axes3_y, axis_x_rus_axes3_z,
+    real rus_q_x, rus_q_y, rus_q_z, rus_J_3_t_10, rus_J_3_t_11, rus_J_3_t_15, rus_J_3_t_17,
+        rus_e_1_in_axes3_x, rus_c_1, rus_s_1, rus_c_2, rus_s_2_t, rus_r_1_t, rus_v_1_t_2, rus_v_1_t_3,
+        rus_v_1_in_axes3_z, axis_z_rus_axes3_x, axis_z_rus_axes3_y, axis_z_rus_axes3_z,
+        axis_y_rus_axes3_x, axis_y_rus_axes3_y, axis_y_rus_axes3_z, axis_x_rus_axes3_x,
+        axis_x_rus_axes3_y, axis_x_rus_axes3_z, inv_rus_v_1_t_2, rus_w_1_t_7, rus_w_1_t_8,
+        rus_w_1_t_9, rus_w_2_in_axes3_z, rus_bias_t, rus_d_2_in_axes3_z, rus_g_in_axes3_x,
+        rus_g_in_axes3_y, rus_g_in_axes3_z, rus_d_Gamma_2_t_2, rus_g_in_axes1_x, rus_g_in_axes1_y,
+        rus_mu_1_t_3, rus_H_a_1_x, rus_H_a_1_y, rus_H_a_1_z, rus_S_dot_t, rus_S_dot_t_2,
+        rus_S_dot_t_3, rus_qd_1_t, rus_qd_2, rus_qd_3, rus_W_3_in_axes3_yz, rus_W_3_in_axes3_xz,
+        rus_W_3_in_axes3_xy, rus_bias_in_axes3_x, rus_bias_in_axes3_y, rus_bias_in_axes3_z,
+        rus_mu_3_t_4, rus_mu_3_t_5, rus_mu_3_t_6, rus_c_t, rus_c_t_2, rus_c_t_3,
+        rus_S_ddot_in_axes3_x, rus_S_ddot_in_axes3_y, rus_S_ddot_in_axes3_z, rus_qdd_1_t, rus_qdd_2,
+        rus_qdd_3_t, rus_Q_xx, rus_Q_xy, rus_Q_xz, rus_Q_yy, rus_Q_yz, rus_Q_zz, rus_M_ta_t_3,
+        rus_M_ta_t_4, rus_M_ta_t_5, rus_M_ta_t_6, rus_M_ta_t_8, rus_M_ta_t_9, rus_M_ta_t_10,
+        rus_M_ta_t_11, rus_M_ta_t_12, rus_M_aa_t, rus_M_aa_t_2, rus_M_aa_t_3, rus_M_aa_t_4,
+        rus_M_aa_t_5, rus_M_aa_t_6, rus_U_x, rus_U_y, rus_U_z, rus_Z_a_t, rus_Z_a_t_2, rus_Z_a_t_3,
         rus_acc_3_in_axes3_x, rus_acc_3_in_axes3_y, rus_acc_3_in_axes3_z, rus_c_in_axes3_x,
         rus_c_in_axes3_y, rus_c_in_axes3_z;
 } values_rus;
@@ -1622,234 +1626,18 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real rus_q_x = R_xy*m->rus_platform_point_y[i] + R_xz*m->rus_platform_point_z[i] +
+    v->rus_q_x = R_xy*m->rus_platform_point_y[i] + R_xz*m->rus_platform_point_z[i] +
         R_xx*m->rus_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real rus_q_y = R_yx*m->rus_platform_point_x[i] + R_yz*m->rus_platform_point_z[i] +
+    v->rus_q_y = R_yx*m->rus_platform_point_x[i] + R_yz*m->rus_platform_point_z[i] +
         R_yy*m->rus_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real rus_q_z = R_zx*m->rus_platform_point_x[i] + R_zy*m->rus_platform_point_y[i] +
+    v->rus_q_z = R_zx*m->rus_platform_point_x[i] + R_zy*m->rus_platform_point_y[i] +
         R_zz*m->rus_platform_point_z[i];
-    /* (rus-S) from the base point to the connection point */
-    const real t_x = X[0*w + j];
-    const real rus_S_x = t_x - m->rus_base_point_x[i] + rus_q_x;
-    const real t_y = X[1*w + j];
-    const real rus_S_y = t_y - m->rus_base_point_y[i] + rus_q_y;
-    const real t_z = X[2*w + j];
-    const real rus_S_z = t_z - m->rus_base_point_z[i] + rus_q_z;
-    /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 1 */
-    const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-    const real rus_Kd_1 = m->rus_J_3_t[i] - m->rus_J_3_t_2[i] + R(0.5)*rus_Kd_1_t;
-    /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rus_Kc_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xx[i] +
-        rus_S_y*m->rus_base_frame_yx[i] + rus_S_z*m->rus_base_frame_zx[i]);
-    /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rus_Ks_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xy[i] +
-        rus_S_y*m->rus_base_frame_yy[i] + rus_S_z*m->rus_base_frame_zy[i]);
-    /* (rus-rho2_1) squared amplitude */
-    const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-    /* (rus-disc_1) discriminant */
-    const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-    /* (rus-root_1) root, with the sign of the branch */
-    const real rus_root_1 = m->rus_branch_1[i]*root(rus_disc_1);
-    /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rus_rho2_1 = 1/rus_rho2_1;
-    const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-    /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rus_s_1 = inv_rus_rho2_1*(rus_Kd_1*rus_Ks_1 + rus_Kc_1*rus_root_1);
-    /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-    const real rus_xi_1_t = m->inv_rus_size_t[i]*m->rus_joint2_offset_x[i]*rus_root_1;
-    /* (rus-x_2) from the origin of joint 2 to the connection point */
-    const real rus_x_2_in_axes1_x = m->inv_rus_size_t[i]*rus_Kd_1*m->rus_joint2_offset_x[i] -
-        m->rus_joint2_offset_x[i];
-    /* (rus-rho2_2) squared amplitude */
-    const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-    /* (rus-root_2) root, with the sign of the branch */
-    const real rus_root_2 = m->rus_branch_2[i]*root(rus_rho2_2);
-    /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_rus_rho2_2 = 1/rus_rho2_2;
-    const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-    /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-    /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-    const real rus_c_3 = m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*rus_root_2;
-    /* (rus-r_1) from joint 1 to the connection point, along the links */
-    const real rus_e_1_in_axes3_x =
-        m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*(rus_S_x*m->rus_base_frame_xz[i]
-        + rus_S_y*m->rus_base_frame_yz[i] + rus_S_z*m->rus_base_frame_zz[i]);
-    const real rus_r_1_t = rus_c_3*m->rus_platform_joint_offset_x[i];
-    const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*m->rus_platform_joint_offset_x[i];
-    const real rus_r_1_t_2 = rus_r_1_t*rus_s_2_t;
-    const real rus_r_1_in_axes1_x = m->rus_joint2_offset_x[i] + rus_c_2*rus_r_1_t;
-    const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2;
-    /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-    const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
-    const real rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z;
-    const real rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-    const real rus_v_1_in_axes3_z = rus_c_3*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z +
-        rus_c_3*rus_v_1_t) + rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t -
-        rus_c_3*rus_r_1_in_axes1_z);
-    /* (rus-w_1) reciprocal vector 1 */
-    const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-    /* (rus-w_2) reciprocal vector 2 */
-    const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
-    /* (rus-qd_1) rate of joint 1 */
-    const real rus_qd_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1;
-    const real rus_qd_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t;
-    const real rus_qd_1_t_3 = rus_c_2*rus_e_1_in_axes3_x;
-    const real rus_qd_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t;
-    const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
-    const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
-    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    const real rus_bias_t = rus_c_2*m->rus_joint2_offset_x[i];
-    const real rus_d_2_in_axes3_z = m->rus_joint2_offset_x[i]*rus_s_2_t;
-    /* (rus-w_1) */
-    const real rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1;
-    const real rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t;
-    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t +
-        m->rus_base_frame_xy[i]*rus_w_1_t_2;
-    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t +
-        m->rus_base_frame_yy[i]*rus_w_1_t_2;
-    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t +
-        m->rus_base_frame_zy[i]*rus_w_1_t_2;
-    const real rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x;
-    const real rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t;
-    const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
-    const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 -
-        m->rus_base_frame_xz[i]*rus_c_3 + m->rus_base_frame_xy[i]*rus_w_1_t_6;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 -
-        m->rus_base_frame_yz[i]*rus_c_3 + m->rus_base_frame_yy[i]*rus_w_1_t_6;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 -
-        m->rus_base_frame_zz[i]*rus_c_3 + m->rus_base_frame_zy[i]*rus_w_1_t_6;
-    v->rus_q_x = rus_q_x;
-    v->rus_q_y = rus_q_y;
-    v->rus_q_z = rus_q_z;
-    v->rus_rho2_1 = rus_rho2_1;
-    v->rus_disc_1 = rus_disc_1;
-    v->rus_c_1 = rus_c_1;
-    v->rus_s_1 = rus_s_1;
-    v->rus_rho2_2 = rus_rho2_2;
-    v->rus_c_2 = rus_c_2;
-    v->rus_s_2_t = rus_s_2_t;
-    v->rus_c_3 = rus_c_3;
-    v->rus_e_1_in_axes3_x = rus_e_1_in_axes3_x;
-    v->rus_r_1_t = rus_r_1_t;
-    v->rus_r_1_in_axes1_z = rus_r_1_in_axes1_z;
-    v->rus_r_1_t_2 = rus_r_1_t_2;
-    v->rus_r_1_in_axes1_x = rus_r_1_in_axes1_x;
-    v->rus_r_1_in_axes3_z = rus_r_1_in_axes3_z;
-    v->rus_v_1_t_2 = rus_v_1_t_2;
-    v->rus_v_1_t_3 = rus_v_1_t_3;
-    v->rus_v_1_in_axes3_z = rus_v_1_in_axes3_z;
-    v->inv_rus_v_1_t_2 = inv_rus_v_1_t_2;
-    v->rus_w_2_in_axes3_z = rus_w_2_in_axes3_z;
-    v->rus_qd_1_t = rus_qd_1_t;
-    v->rus_qd_1_t_2 = rus_qd_1_t_2;
-    v->rus_qd_1_t_5 = rus_qd_1_t_5;
-    v->rus_qd_1_t_6 = rus_qd_1_t_6;
-    v->rus_bias_t = rus_bias_t;
-    v->rus_d_2_in_axes3_z = rus_d_2_in_axes3_z;
-    v->axis_z_rus_axes3_x = axis_z_rus_axes3_x;
-    v->axis_z_rus_axes3_y = axis_z_rus_axes3_y;
-    v->axis_z_rus_axes3_z = axis_z_rus_axes3_z;
-    v->axis_y_rus_axes3_x = axis_y_rus_axes3_x;
-    v->axis_y_rus_axes3_y = axis_y_rus_axes3_y;
-    v->axis_y_rus_axes3_z = axis_y_rus_axes3_z;
-}
-
-INLINE void stage_rus_A_X(size_t w, size_t j, const real *A, values_rus *v)
-{
-    /* (rus-a_p) acceleration of the connection point without its centripetal part */
-    const real alpha_y = A[4*w + j];
-    const real alpha_z = A[5*w + j];
-    const real t_ddot_x = A[0*w + j];
-    const real rus_a_p_x = t_ddot_x + alpha_y*v->rus_q_z - alpha_z*v->rus_q_y;
-    const real alpha_x = A[3*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real rus_a_p_y = t_ddot_y + alpha_z*v->rus_q_x - alpha_x*v->rus_q_z;
-    const real t_ddot_z = A[2*w + j];
-    const real rus_a_p_z = t_ddot_z + alpha_x*v->rus_q_y - alpha_y*v->rus_q_x;
-    v->rus_a_p_x = rus_a_p_x;
-    v->rus_a_p_y = rus_a_p_y;
-    v->rus_a_p_z = rus_a_p_z;
-}
-
-INLINE void stage_rus_V_X(size_t w, size_t j, const real *V, values_rus *v)
-{
-    /* (rus-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real rus_S_dot_t = omega_y*v->rus_q_z - omega_z*v->rus_q_y;
-    const real omega_x = V[3*w + j];
-    const real rus_S_dot_t_2 = omega_z*v->rus_q_x - omega_x*v->rus_q_z;
-    const real rus_S_dot_t_3 = omega_x*v->rus_q_y - omega_y*v->rus_q_x;
-    const real t_dot_x = V[0*w + j];
-    const real rus_S_dot_x = t_dot_x + rus_S_dot_t;
-    const real t_dot_y = V[1*w + j];
-    const real rus_S_dot_y = t_dot_y + rus_S_dot_t_2;
-    const real t_dot_z = V[2*w + j];
-    const real rus_S_dot_z = t_dot_z + rus_S_dot_t_3;
-    v->rus_S_dot_t = rus_S_dot_t;
-    v->rus_S_dot_t_2 = rus_S_dot_t_2;
-    v->rus_S_dot_t_3 = rus_S_dot_t_3;
-    v->rus_S_dot_x = rus_S_dot_x;
-    v->rus_S_dot_y = rus_S_dot_y;
-    v->rus_S_dot_z = rus_S_dot_z;
-}
-
-INLINE void stage_rus_A_V_X(size_t w, size_t j, const real *V, values_rus *v)
-{
-    /* (rus-S_ddot) acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real rus_S_ddot_x = omega_y*v->rus_S_dot_t_3 - omega_z*v->rus_S_dot_t_2 +
-        v->rus_a_p_x;
-    const real omega_x = V[3*w + j];
-    const real rus_S_ddot_y = omega_z*v->rus_S_dot_t - omega_x*v->rus_S_dot_t_3 +
-        v->rus_a_p_y;
-    const real rus_S_ddot_z = omega_x*v->rus_S_dot_t_2 - omega_y*v->rus_S_dot_t +
-        v->rus_a_p_z;
-    v->rus_S_ddot_x = rus_S_ddot_x;
-    v->rus_S_ddot_y = rus_S_ddot_y;
-    v->rus_S_ddot_z = rus_S_ddot_z;
-}
-
-INLINE void stage_rus_H_condition(values_rus *v)
-{
-    /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-    const real rus_v_1_t = v->rus_c_3*(v->rus_r_1_in_axes1_x*v->rus_s_2_t -
-        v->rus_c_2*v->rus_r_1_t*v->rus_s_2_t);
-    /* (rus-w_1) reciprocal vector 1 */
-    const real inv_rus_v_1_t = 1/rus_v_1_t;
-    const real rus_w_1_t_7 = inv_rus_v_1_t*(v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_z -
-        v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_y);
-    const real rus_w_1_t_8 = inv_rus_v_1_t*(v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_x -
-        v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_z);
-    const real rus_w_1_t_9 = inv_rus_v_1_t*(v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_y -
-        v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_x);
-    /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-    const real rus_H_a_1_x = v->rus_q_z*rus_w_1_t_8 - v->rus_q_y*rus_w_1_t_9;
-    const real rus_H_a_1_y = v->rus_q_x*rus_w_1_t_9 - v->rus_q_z*rus_w_1_t_7;
-    const real rus_H_a_1_z = v->rus_q_y*rus_w_1_t_7 - v->rus_q_x*rus_w_1_t_8;
-    v->rus_v_1_t = rus_v_1_t;
-    v->rus_w_1_t_7 = rus_w_1_t_7;
-    v->rus_w_1_t_8 = rus_w_1_t_8;
-    v->rus_w_1_t_9 = rus_w_1_t_9;
-    v->rus_H_a_1_x = rus_H_a_1_x;
-    v->rus_H_a_1_y = rus_H_a_1_y;
-    v->rus_H_a_1_z = rus_H_a_1_z;
-}
-
-INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *X,
-    values_rus *v)
-{
-    /* (rus-J_3) inertia tensor of link 3 about the connection point */
     const real t_x = X[0*w + j];
     const real rus_J_3_t_3 = t_x - m->rus_base_point_x[i] + v->rus_q_x;
     const real t_y = X[1*w + j];
@@ -1863,306 +1651,457 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
         rus_J_3_t_4*m->rus_base_frame_yx[i] + rus_J_3_t_5*m->rus_base_frame_zx[i]);
     const real rus_J_3_t_9 = m->rus_joint2_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xy[i] +
         rus_J_3_t_4*m->rus_base_frame_yy[i] + rus_J_3_t_5*m->rus_base_frame_zy[i]);
-    const real rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9;
-    const real rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7;
-    const real rus_J_3_t_12 = root(rus_J_3_t_11)*m->rus_branch_1[i];
+    v->rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9;
+    v->rus_J_3_t_11 = v->rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7;
+    const real rus_J_3_t_12 = root(v->rus_J_3_t_11)*m->rus_branch_1[i];
     const real rus_J_3_t_13 = m->inv_rus_size_t[i]*rus_J_3_t_12*m->rus_joint2_offset_x[i];
     const real rus_J_3_t_14 = m->inv_rus_size_t[i]*rus_J_3_t_7*m->rus_joint2_offset_x[i] -
         m->rus_joint2_offset_x[i];
-    const real rus_J_3_t_15 = rus_J_3_t_14*rus_J_3_t_14 + rus_J_3_t_13*rus_J_3_t_13;
-    const real rus_J_3_t_16 = root(rus_J_3_t_15)*m->rus_branch_2[i];
-    const real rus_J_3_t_17 =
-        m->inv_rus_size_t_2[i]*rus_J_3_t_16*m->rus_platform_joint_offset_x[i];
-    const real rus_e_1_in_axes3_x =
+    v->rus_J_3_t_15 = rus_J_3_t_14*rus_J_3_t_14 + rus_J_3_t_13*rus_J_3_t_13;
+    const real rus_J_3_t_16 = root(v->rus_J_3_t_15)*m->rus_branch_2[i];
+    v->rus_J_3_t_17 = m->inv_rus_size_t_2[i]*rus_J_3_t_16*m->rus_platform_joint_offset_x[i];
+    v->rus_e_1_in_axes3_x =
         m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xz[i]
         + rus_J_3_t_4*m->rus_base_frame_yz[i] + rus_J_3_t_5*m->rus_base_frame_zz[i]);
-    const real rus_J_3_in_axes2_yz = m->rus_J_3_in_spec3_xy[i]*rus_e_1_in_axes3_x +
-        m->rus_J_3_in_spec3_yz[i]*rus_J_3_t_17;
-    const real rus_J_3_in_axes1_zz =
-        rus_J_3_t_17*(m->rus_J_3_in_spec3_xz[i]*rus_e_1_in_axes3_x +
-        m->rus_J_3_in_spec3_zz[i]*rus_J_3_t_17) -
-        rus_e_1_in_axes3_x*(-m->rus_J_3_in_spec3_xx[i]*rus_e_1_in_axes3_x -
-        m->rus_J_3_in_spec3_xz[i]*rus_J_3_t_17);
     /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rus_J_3_t_10 = 1/rus_J_3_t_10;
-    const real rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 -
-        rus_J_3_t_12*rus_J_3_t_9);
+    const real inv_rus_J_3_t_10 = 1/v->rus_J_3_t_10;
+    v->rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9);
     /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_9 +
-        rus_J_3_t_12*rus_J_3_t_8);
+    v->rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_9 + rus_J_3_t_12*rus_J_3_t_8);
     /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_rus_J_3_t_15 = 1/rus_J_3_t_15;
-    const real rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16;
+    const real inv_rus_J_3_t_15 = 1/v->rus_J_3_t_15;
+    v->rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16;
     /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16;
+    v->rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16;
     /* (rus-r_1) from joint 1 to the connection point, along the links */
-    const real rus_r_1_t = rus_J_3_t_17*m->rus_platform_joint_offset_x[i];
-    const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*m->rus_platform_joint_offset_x[i];
-    const real rus_r_1_t_2 = rus_r_1_t*rus_s_2_t;
-    const real rus_r_1_in_axes1_x = m->rus_joint2_offset_x[i] + rus_c_2*rus_r_1_t;
-    const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2;
+    v->rus_r_1_t = v->rus_J_3_t_17*m->rus_platform_joint_offset_x[i];
+    const real rus_r_1_in_axes1_z = v->rus_e_1_in_axes3_x*m->rus_platform_joint_offset_x[i];
+    const real rus_r_1_t_2 = v->rus_r_1_t*v->rus_s_2_t;
+    const real rus_r_1_in_axes1_x = m->rus_joint2_offset_x[i] + v->rus_c_2*v->rus_r_1_t;
+    const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*v->rus_s_2_t - v->rus_c_2*rus_r_1_t_2;
     /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-    const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
-    const real rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z;
-    const real rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-    const real rus_v_1_in_axes3_z = rus_J_3_t_17*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z +
-        rus_J_3_t_17*rus_v_1_t) + rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t -
-        rus_J_3_t_17*rus_r_1_in_axes1_z);
+    const real rus_v_1_t = v->rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*v->rus_s_2_t;
+    v->rus_v_1_t_2 = v->rus_J_3_t_17*rus_r_1_in_axes3_z;
+    v->rus_v_1_t_3 = v->rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
+    v->rus_v_1_in_axes3_z = v->rus_J_3_t_17*(v->rus_e_1_in_axes3_x*rus_r_1_in_axes1_z +
+        v->rus_J_3_t_17*rus_v_1_t) + v->rus_e_1_in_axes3_x*(v->rus_e_1_in_axes3_x*rus_v_1_t -
+        v->rus_J_3_t_17*rus_r_1_in_axes1_z);
     /* (rus-w_1) reciprocal vector 1 */
-    const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+    const real rus_w_1_t = v->rus_c_1*v->rus_s_2_t - v->rus_c_2*v->rus_s_1;
+    const real rus_w_1_t_2 = v->rus_c_1*v->rus_c_2 + v->rus_s_1*v->rus_s_2_t;
+    v->axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t +
+        m->rus_base_frame_xy[i]*rus_w_1_t_2;
+    v->axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t +
+        m->rus_base_frame_yy[i]*rus_w_1_t_2;
+    v->axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t +
+        m->rus_base_frame_zy[i]*rus_w_1_t_2;
+    const real rus_w_1_t_3 = v->rus_c_2*v->rus_e_1_in_axes3_x;
+    const real rus_w_1_t_4 = v->rus_e_1_in_axes3_x*v->rus_s_2_t;
+    const real rus_w_1_t_5 = v->rus_c_1*rus_w_1_t_3 + v->rus_s_1*rus_w_1_t_4;
+    const real rus_w_1_t_6 = v->rus_s_1*rus_w_1_t_3 - v->rus_c_1*rus_w_1_t_4;
+    v->axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 -
+        v->rus_J_3_t_17*m->rus_base_frame_xz[i] + m->rus_base_frame_xy[i]*rus_w_1_t_6;
+    v->axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 -
+        v->rus_J_3_t_17*m->rus_base_frame_yz[i] + m->rus_base_frame_yy[i]*rus_w_1_t_6;
+    v->axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 -
+        v->rus_J_3_t_17*m->rus_base_frame_zz[i] + m->rus_base_frame_zy[i]*rus_w_1_t_6;
+    v->axis_x_rus_axes3_x = v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_z -
+        v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_y;
+    v->axis_x_rus_axes3_y = v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_x -
+        v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_z;
+    v->axis_x_rus_axes3_z = v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_y -
+        v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_x;
+    v->inv_rus_v_1_t_2 = 1/v->rus_v_1_t_2;
+    v->rus_w_1_t_7 = v->axis_x_rus_axes3_x*v->inv_rus_v_1_t_2;
+    v->rus_w_1_t_8 = v->axis_x_rus_axes3_y*v->inv_rus_v_1_t_2;
+    v->rus_w_1_t_9 = v->axis_x_rus_axes3_z*v->inv_rus_v_1_t_2;
     /* (rus-w_2) reciprocal vector 2 */
-    const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
-    const real rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z;
-    /* (rus-w_3) reciprocal vector 3 */
-    const real rus_w_3_t = inv_rus_v_1_t_2*rus_v_1_t_3*m->rus_w_3_in_axes3_y[i];
-    /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-    const real rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z;
-    const real rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z;
-    /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-       inertia and weight */
-    const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z;
-    const real rus_d_Gamma_3_in_axes3_x = m->rus_h_3_in_spec3_z[i] -
-        inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz + m->rus_d_Gamma_3_t[i]*rus_v_1_t_3 -
-        rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z);
+    v->rus_w_2_in_axes3_z = 1/v->rus_r_1_t;
+    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+    v->rus_bias_t = v->rus_c_2*m->rus_joint2_offset_x[i];
+    v->rus_d_2_in_axes3_z = m->rus_joint2_offset_x[i]*v->rus_s_2_t;
+    /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
+    v->rus_g_in_axes3_x = v->axis_x_rus_axes3_x*m->gravity_x +
+        v->axis_x_rus_axes3_y*m->gravity_y + v->axis_x_rus_axes3_z*m->gravity_z;
+    v->rus_g_in_axes3_y = v->axis_y_rus_axes3_x*m->gravity_x +
+        v->axis_y_rus_axes3_y*m->gravity_y + v->axis_y_rus_axes3_z*m->gravity_z;
+    v->rus_g_in_axes3_z = v->axis_z_rus_axes3_x*m->gravity_x +
+        v->axis_z_rus_axes3_y*m->gravity_y + v->axis_z_rus_axes3_z*m->gravity_z;
     /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real rus_d_Gamma_2_t = rus_J_3_t_17*m->rus_h_3_in_spec3_y[i];
-    const real rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z;
-    const real rus_d_Gamma_2_t_3 = -rus_J_3_in_axes2_yz*m->rus_w_3_in_axes3_y[i];
-    const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
-    const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_3;
-    const real rus_d_Gamma_2_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 -
-        rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_4) - rus_d_Gamma_2_t;
-    const real rus_d_Gamma_2_in_axes3_y = -rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        rus_d_Gamma_2_t_3;
-    const real rus_d_Gamma_2_in_axes3_z = rus_J_3_t_17*m->rus_h_3_in_spec3_x[i] -
-        rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i] + rus_d_Gamma_2_t_2;
+    v->rus_d_Gamma_2_t_2 = v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i] -
+        v->rus_J_3_t_17*m->rus_h_3_in_spec3_x[i];
+    /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    v->rus_g_in_axes1_x = v->rus_c_1*m->rus_mu_1_t[i] + m->rus_mu_1_t_2[i]*v->rus_s_1;
+    v->rus_g_in_axes1_y = v->rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v->rus_s_1;
+    v->rus_mu_1_t_3 = v->rus_g_in_axes1_y*m->rus_h_1_in_spec1_x[i] -
+        v->rus_g_in_axes1_x*m->rus_h_1_in_spec1_y[i];
+    /* (rus-H_a_1) moment of the column's unit force about the platform origin */
+    v->rus_H_a_1_x = v->rus_q_z*v->rus_w_1_t_8 - v->rus_q_y*v->rus_w_1_t_9;
+    v->rus_H_a_1_y = v->rus_q_x*v->rus_w_1_t_9 - v->rus_q_z*v->rus_w_1_t_7;
+    v->rus_H_a_1_z = v->rus_q_y*v->rus_w_1_t_7 - v->rus_q_x*v->rus_w_1_t_8;
+}
+
+INLINE void stage_rus_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rus *v)
+{
+    /* (rus-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    v->rus_S_dot_t = omega_y*v->rus_q_z - omega_z*v->rus_q_y;
+    const real omega_x = V[3*w + j];
+    v->rus_S_dot_t_2 = omega_z*v->rus_q_x - omega_x*v->rus_q_z;
+    v->rus_S_dot_t_3 = omega_x*v->rus_q_y - omega_y*v->rus_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real rus_S_dot_x = t_dot_x + v->rus_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real rus_S_dot_y = t_dot_y + v->rus_S_dot_t_2;
+    const real t_dot_z = V[2*w + j];
+    const real rus_S_dot_z = t_dot_z + v->rus_S_dot_t_3;
+    /* (rus-qd_1) rate of joint 1 */
+    v->rus_qd_1_t = v->inv_rus_v_1_t_2*(v->axis_x_rus_axes3_x*rus_S_dot_x +
+        v->axis_x_rus_axes3_y*rus_S_dot_y + v->axis_x_rus_axes3_z*rus_S_dot_z);
+    /* (rus-qd_2) rate of joint 2 */
+    v->rus_qd_2 = v->rus_w_2_in_axes3_z*(v->axis_z_rus_axes3_x*rus_S_dot_x +
+        v->axis_z_rus_axes3_y*rus_S_dot_y + v->axis_z_rus_axes3_z*rus_S_dot_z +
+        v->rus_qd_1_t*v->rus_v_1_in_axes3_z);
+    /* (rus-qd_3) rate of joint 3 */
+    const real rus_qd_3_t = v->axis_y_rus_axes3_x*rus_S_dot_x +
+        v->axis_y_rus_axes3_y*rus_S_dot_y + v->axis_y_rus_axes3_z*rus_S_dot_z -
+        v->rus_qd_1_t*v->rus_v_1_t_3;
+    v->rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
+    /* (rus-omega_1) angular velocity of link 1 */
+    const real rus_omega_1_in_axes3_x = -v->rus_e_1_in_axes3_x*v->rus_qd_1_t;
+    const real rus_omega_1_in_axes3_y = v->rus_J_3_t_17*v->rus_qd_1_t;
+    /* (rus-omega_2) angular velocity of link 2 */
+    const real rus_omega_2_in_axes2_z = v->rus_qd_2 - v->rus_qd_1_t;
+    const real rus_omega_2_in_axes3_x = v->rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+    const real rus_omega_2_in_axes3_y = -v->rus_J_3_t_17*rus_omega_2_in_axes2_z;
+    /* (rus-W_3) centripetal tensor of link 3 */
+    v->rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*v->rus_qd_3;
+    v->rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*v->rus_qd_3;
+    v->rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
+    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+    const real rus_bias_t_2 = v->rus_J_3_t_17*v->rus_bias_t*rus_omega_1_in_axes3_y -
+        v->rus_bias_t*v->rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
+    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
+    v->rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - v->rus_qd_3*rus_qd_3_t -
+        rus_bias_t_2*rus_omega_1_in_axes3_y;
+    v->rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
+        rus_bias_t_3*rus_omega_2_in_axes3_x;
+    v->rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
+        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
+        v->rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
+    /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
+    const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
+    const real rus_mu_3_t_3 = v->rus_qd_3*v->rus_qd_3;
+    v->rus_mu_3_t_4 = m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_t_2 - rus_mu_3_t_3);
+    v->rus_mu_3_t_5 = m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_t - rus_mu_3_t_3);
+    v->rus_mu_3_t_6 = m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_t - rus_mu_3_t_2);
+    /* (rus-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->rus_c_t = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_t_3 + rus_mu_3_t_2);
+    v->rus_c_t_2 = m->rus_h_3_in_spec3_z[i]*(rus_mu_3_t_3 + rus_mu_3_t);
+    v->rus_c_t_3 = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_t + rus_mu_3_t_2);
+}
+
+INLINE void stage_rus_A_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
+    real *A, values_rus *v)
+{
+    /* (rus-S_ddot) acceleration of the connection point */
+    const real B_p_xy = s[9*w + j];
+    const real B_p_xz = s[10*w + j];
+    const real W_p_t_4 = s[11*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real rus_S_ddot_x = t_ddot_x + B_p_xy*v->rus_q_y + B_p_xz*v->rus_q_z -
+        W_p_t_4*v->rus_q_x;
+    const real B_p_yx = s[12*w + j];
+    const real B_p_yz = s[13*w + j];
+    const real W_p_t_5 = s[14*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real rus_S_ddot_y = t_ddot_y + B_p_yx*v->rus_q_x + B_p_yz*v->rus_q_z -
+        W_p_t_5*v->rus_q_y;
+    const real B_p_zx = s[15*w + j];
+    const real B_p_zy = s[16*w + j];
+    const real W_p_t_6 = s[17*w + j];
+    const real t_ddot_z = A[2*w + j];
+    const real rus_S_ddot_z = t_ddot_z + B_p_zx*v->rus_q_x + B_p_zy*v->rus_q_y -
+        W_p_t_6*v->rus_q_z;
+    v->rus_S_ddot_in_axes3_x = v->axis_x_rus_axes3_x*rus_S_ddot_x +
+        v->axis_x_rus_axes3_y*rus_S_ddot_y + v->axis_x_rus_axes3_z*rus_S_ddot_z;
+    v->rus_S_ddot_in_axes3_y = v->axis_y_rus_axes3_x*rus_S_ddot_x +
+        v->axis_y_rus_axes3_y*rus_S_ddot_y + v->axis_y_rus_axes3_z*rus_S_ddot_z;
+    v->rus_S_ddot_in_axes3_z = v->axis_z_rus_axes3_x*rus_S_ddot_x +
+        v->axis_z_rus_axes3_y*rus_S_ddot_y + v->axis_z_rus_axes3_z*rus_S_ddot_z;
+    /* (rus-rel) acceleration of the connection point left to the joint accelerations */
+    const real rus_rel_in_axes3_x = v->rus_S_ddot_in_axes3_x - v->rus_bias_in_axes3_x;
+    const real rus_rel_in_axes3_y = v->rus_S_ddot_in_axes3_y - v->rus_bias_in_axes3_y;
+    const real rus_rel_in_axes3_z = v->rus_S_ddot_in_axes3_z - v->rus_bias_in_axes3_z;
+    /* (rus-qdd_1) acceleration of joint 1 */
+    v->rus_qdd_1_t = v->inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+    /* (rus-qdd_2) acceleration of joint 2 */
+    v->rus_qdd_2 = v->rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
+        v->rus_qdd_1_t*v->rus_v_1_in_axes3_z);
+    /* (rus-qdd_3) acceleration of joint 3 */
+    v->rus_qdd_3_t = m->rus_w_3_in_axes3_y[i]*(v->rus_qdd_1_t*v->rus_v_1_t_3 -
+        rus_rel_in_axes3_y);
+}
+
+INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
+{
+    /* (rus-J_3) inertia tensor of link 3 about the connection point */
+    const real rus_J_3_in_axes2_yz = m->rus_J_3_in_spec3_xy[i]*v->rus_e_1_in_axes3_x +
+        m->rus_J_3_in_spec3_yz[i]*v->rus_J_3_t_17;
+    const real rus_J_3_in_axes1_zz =
+        v->rus_J_3_t_17*(m->rus_J_3_in_spec3_xz[i]*v->rus_e_1_in_axes3_x +
+        m->rus_J_3_in_spec3_zz[i]*v->rus_J_3_t_17) -
+        v->rus_e_1_in_axes3_x*(-m->rus_J_3_in_spec3_xx[i]*v->rus_e_1_in_axes3_x -
+        m->rus_J_3_in_spec3_xz[i]*v->rus_J_3_t_17);
+    /* (rus-w_2) reciprocal vector 2 */
+    const real rus_w_2_in_axes3_x =
+        v->inv_rus_v_1_t_2*v->rus_v_1_in_axes3_z*v->rus_w_2_in_axes3_z;
+    /* (rus-w_3) reciprocal vector 3 */
+    const real rus_w_3_t = v->inv_rus_v_1_t_2*v->rus_v_1_t_3*m->rus_w_3_in_axes3_y[i];
+    /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+    const real rus_d_alpha_3_t = v->rus_J_3_t_17*v->rus_w_2_in_axes3_z;
+    /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*v->rus_w_2_in_axes3_z;
+    const real rus_d_Gamma_3_in_axes3_x = m->rus_h_3_in_spec3_z[i] -
+        v->inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz + m->rus_d_Gamma_3_t[i]*v->rus_v_1_t_3 -
+        rus_d_Gamma_3_in_axes3_z*v->rus_v_1_in_axes3_z);
+    /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rus_d_Gamma_2_t = v->rus_J_3_t_17*m->rus_h_3_in_spec3_y[i];
+    const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes1_zz*v->rus_w_2_in_axes3_z;
+    const real rus_d_Gamma_2_t_4 = -rus_J_3_in_axes2_yz*m->rus_w_3_in_axes3_y[i];
+    const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*v->rus_v_1_in_axes3_z;
+    const real rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*v->rus_v_1_t_3;
+    const real rus_d_Gamma_2_in_axes3_x = v->inv_rus_v_1_t_2*(rus_d_Gamma_2_t_6 -
+        rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5) - rus_d_Gamma_2_t;
+    const real rus_d_Gamma_2_in_axes3_y = -v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        rus_d_Gamma_2_t_4;
+    const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_3 - v->rus_d_Gamma_2_t_2;
     /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rus_d_Gamma_1_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 -
-        m->rus_J_1_in_spec1_zz[i] - rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_4) -
+    const real rus_d_Gamma_1_in_axes3_x = v->inv_rus_v_1_t_2*(rus_d_Gamma_2_t_6 -
+        m->rus_J_1_in_spec1_zz[i] - rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5) -
         rus_d_Gamma_2_t;
+    /* (rus-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real rus_d_G_in_axes3_zy = rus_d_Gamma_2_in_axes3_y*v->rus_w_2_in_axes3_z;
     /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x +
+    const real rus_d_c_in_axes3_xx = v->inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x +
         rus_d_Gamma_3_in_axes3_x*rus_w_3_t + m->rus_h_3_in_spec3_z[i]*rus_w_3_t -
         rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
-        m->rus_h_3_in_spec3_y[i]*(inv_rus_v_1_t_2*rus_J_3_t_17 -
-        rus_J_3_t_17*rus_w_2_in_axes3_x);
-    const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
+        m->rus_h_3_in_spec3_y[i]*(v->inv_rus_v_1_t_2*v->rus_J_3_t_17 -
+        v->rus_J_3_t_17*rus_w_2_in_axes3_x);
+    const real rus_d_c_in_axes3_xy = v->inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
         m->rus_d_phi_3_in_axes3_xy[i] + m->rus_d_Gamma_3_in_axes3_y[i]*rus_w_3_t -
         rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x;
     const real rus_d_c_in_axes3_xz = rus_d_alpha_3_t*m->rus_h_3_in_spec3_y[i] +
-        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_Gamma_3_in_axes3_z*rus_w_3_t -
+        v->inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_Gamma_3_in_axes3_z*rus_w_3_t -
         rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x;
-    const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_y[i] -
-        rus_d_Gamma_3_in_axes3_z*m->rus_w_3_in_axes3_y[i];
-    v->rus_J_3_t_10 = rus_J_3_t_10;
-    v->rus_J_3_t_11 = rus_J_3_t_11;
-    v->rus_J_3_t_15 = rus_J_3_t_15;
-    v->rus_J_3_t_17 = rus_J_3_t_17;
-    v->rus_e_1_in_axes3_x = rus_e_1_in_axes3_x;
-    v->rus_c_1 = rus_c_1;
-    v->rus_s_1 = rus_s_1;
-    v->rus_c_2 = rus_c_2;
-    v->rus_s_2_t = rus_s_2_t;
-    v->rus_r_1_t = rus_r_1_t;
-    v->rus_v_1_t_2 = rus_v_1_t_2;
-    v->rus_v_1_t_3 = rus_v_1_t_3;
-    v->rus_v_1_in_axes3_z = rus_v_1_in_axes3_z;
-    v->inv_rus_v_1_t_2 = inv_rus_v_1_t_2;
-    v->rus_w_2_in_axes3_z = rus_w_2_in_axes3_z;
-    v->rus_d_alpha_3_in_axes3_xz = rus_d_alpha_3_in_axes3_xz;
-    v->rus_d_alpha_3_t = rus_d_alpha_3_t;
-    v->rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_in_axes3_z;
-    v->rus_d_c_in_axes3_xx = rus_d_c_in_axes3_xx;
-    v->rus_d_c_in_axes3_xy = rus_d_c_in_axes3_xy;
-    v->rus_d_c_in_axes3_xz = rus_d_c_in_axes3_xz;
-    v->rus_d_c_in_axes3_yz = rus_d_c_in_axes3_yz;
+    /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rus_Q_t = rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
+    const real rus_Q_t_2 = R(0.5)*rus_Q_t;
+    const real rus_Q_t_3 = rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
+        v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i]*v->rus_w_2_in_axes3_z +
+        rus_d_Gamma_2_in_axes3_z*v->rus_w_2_in_axes3_z + rus_d_c_in_axes3_xx;
+    const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
+    const real rus_Q_t_5 = v->axis_z_rus_axes3_x*rus_d_G_in_axes3_zy -
+        v->axis_x_rus_axes3_x*rus_d_c_in_axes3_xy + v->axis_y_rus_axes3_x*rus_Q_t_2;
+    const real rus_Q_t_6 = v->axis_z_rus_axes3_y*rus_d_G_in_axes3_zy -
+        v->axis_x_rus_axes3_y*rus_d_c_in_axes3_xy + v->axis_y_rus_axes3_y*rus_Q_t_2;
+    const real rus_Q_t_7 = v->axis_z_rus_axes3_z*rus_d_G_in_axes3_zy -
+        v->axis_x_rus_axes3_z*rus_d_c_in_axes3_xy + v->axis_y_rus_axes3_z*rus_Q_t_2;
+    const real rus_Q_t_8 = v->axis_z_rus_axes3_x*rus_Q_t_4 -
+        v->axis_x_rus_axes3_x*rus_d_c_in_axes3_xz;
+    const real rus_Q_t_9 = v->axis_z_rus_axes3_y*rus_Q_t_4 -
+        v->axis_x_rus_axes3_y*rus_d_c_in_axes3_xz;
+    const real rus_Q_t_10 = v->axis_z_rus_axes3_z*rus_Q_t_4 -
+        v->axis_x_rus_axes3_z*rus_d_c_in_axes3_xz;
+    const real rus_Q_t_11 = v->axis_y_rus_axes3_x*rus_Q_t_5 + v->axis_z_rus_axes3_x*rus_Q_t_8;
+    v->rus_Q_xx = 2*rus_Q_t_11 - rus_d_c_in_axes3_xx;
+    v->rus_Q_xy = v->axis_y_rus_axes3_x*rus_Q_t_6 + v->axis_y_rus_axes3_y*rus_Q_t_5 +
+        v->axis_z_rus_axes3_x*rus_Q_t_9 + v->axis_z_rus_axes3_y*rus_Q_t_8;
+    v->rus_Q_xz = v->axis_y_rus_axes3_x*rus_Q_t_7 + v->axis_y_rus_axes3_z*rus_Q_t_5 +
+        v->axis_z_rus_axes3_x*rus_Q_t_10 + v->axis_z_rus_axes3_z*rus_Q_t_8;
+    const real rus_Q_t_12 = v->axis_y_rus_axes3_y*rus_Q_t_6 + v->axis_z_rus_axes3_y*rus_Q_t_9;
+    v->rus_Q_yy = 2*rus_Q_t_12 - rus_d_c_in_axes3_xx;
+    v->rus_Q_yz = v->axis_y_rus_axes3_y*rus_Q_t_7 + v->axis_y_rus_axes3_z*rus_Q_t_6 +
+        v->axis_z_rus_axes3_y*rus_Q_t_10 + v->axis_z_rus_axes3_z*rus_Q_t_9;
+    const real rus_Q_t_13 = v->axis_y_rus_axes3_z*rus_Q_t_7 +
+        v->axis_z_rus_axes3_z*rus_Q_t_10;
+    v->rus_Q_zz = 2*rus_Q_t_13 - rus_d_c_in_axes3_xx;
+    /* (M_ta) coupling block of M */
+    const real rus_M_ta_t = v->rus_Q_xy*v->rus_q_z;
+    const real rus_M_ta_t_2 = v->rus_Q_xz*v->rus_q_y;
+    v->rus_M_ta_t_3 = rus_M_ta_t_2 - rus_M_ta_t;
+    v->rus_M_ta_t_4 = v->rus_Q_xx*v->rus_q_z - v->rus_Q_xz*v->rus_q_x;
+    v->rus_M_ta_t_5 = v->rus_Q_xy*v->rus_q_x - v->rus_Q_xx*v->rus_q_y;
+    v->rus_M_ta_t_6 = v->rus_Q_yz*v->rus_q_y - v->rus_Q_yy*v->rus_q_z;
+    const real rus_M_ta_t_7 = v->rus_Q_yz*v->rus_q_x;
+    v->rus_M_ta_t_8 = rus_M_ta_t - rus_M_ta_t_7;
+    v->rus_M_ta_t_9 = v->rus_Q_yy*v->rus_q_x - v->rus_Q_xy*v->rus_q_y;
+    v->rus_M_ta_t_10 = v->rus_Q_zz*v->rus_q_y - v->rus_Q_yz*v->rus_q_z;
+    v->rus_M_ta_t_11 = v->rus_Q_xz*v->rus_q_z - v->rus_Q_zz*v->rus_q_x;
+    v->rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2;
+    /* (M_aa) rotational block of M */
+    v->rus_M_aa_t = v->rus_M_ta_t_10*v->rus_q_y - v->rus_M_ta_t_6*v->rus_q_z;
+    v->rus_M_aa_t_2 = v->rus_M_ta_t_11*v->rus_q_y - v->rus_M_ta_t_8*v->rus_q_z;
+    v->rus_M_aa_t_3 = v->rus_M_ta_t_12*v->rus_q_y - v->rus_M_ta_t_9*v->rus_q_z;
+    v->rus_M_aa_t_4 = v->rus_M_ta_t_4*v->rus_q_z - v->rus_M_ta_t_11*v->rus_q_x;
+    v->rus_M_aa_t_5 = v->rus_M_ta_t_5*v->rus_q_z - v->rus_M_ta_t_12*v->rus_q_x;
+    v->rus_M_aa_t_6 = v->rus_M_ta_t_9*v->rus_q_x - v->rus_M_ta_t_5*v->rus_q_y;
 }
 
-INLINE void stage_rus_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_rus *v)
+INLINE void stage_rus_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rus *v)
 {
-    /* (rus-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real rus_S_x = t_x - m->rus_base_point_x[i] + R_xy*m->rus_platform_point_y[i] +
-        R_xz*m->rus_platform_point_z[i] + R_xx*m->rus_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real rus_S_y = t_y - m->rus_base_point_y[i] + R_yx*m->rus_platform_point_x[i] +
-        R_yz*m->rus_platform_point_z[i] + R_yy*m->rus_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real rus_S_z = t_z - m->rus_base_point_z[i] + R_zx*m->rus_platform_point_x[i] +
-        R_zy*m->rus_platform_point_y[i] + R_zz*m->rus_platform_point_z[i];
-    /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 1 */
-    const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-    const real rus_Kd_1 = m->rus_J_3_t[i] - m->rus_J_3_t_2[i] + R(0.5)*rus_Kd_1_t;
-    /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rus_Kc_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xx[i] +
-        rus_S_y*m->rus_base_frame_yx[i] + rus_S_z*m->rus_base_frame_zx[i]);
-    /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rus_Ks_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xy[i] +
-        rus_S_y*m->rus_base_frame_yy[i] + rus_S_z*m->rus_base_frame_zy[i]);
-    /* (rus-rho2_1) squared amplitude */
-    const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-    /* (rus-disc_1) discriminant */
-    const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-    /* (rus-root_1) root, with the sign of the branch */
-    const real rus_root_1 = m->rus_branch_1[i]*root(rus_disc_1);
-    /* (rus-q_1) displacement of joint 1 */
-    const real inv_rus_rho2_1 = 1/rus_rho2_1;
-    /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-    const real rus_xi_1_t = m->inv_rus_size_t[i]*m->rus_joint2_offset_x[i]*rus_root_1;
-    /* (rus-x_2) from the origin of joint 2 to the connection point */
-    const real rus_x_2_in_axes1_x = m->inv_rus_size_t[i]*rus_Kd_1*m->rus_joint2_offset_x[i] -
-        m->rus_joint2_offset_x[i];
-    /* (rus-rho2_2) squared amplitude */
-    const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-    /* (rus-root_2) root, with the sign of the branch */
-    const real rus_root_2 = m->rus_branch_2[i]*root(rus_rho2_2);
-    /* (rus-q_2) displacement of joint 2 */
-    const real inv_rus_rho2_2 = 1/rus_rho2_2;
-    v->rus_S_x = rus_S_x;
-    v->rus_S_y = rus_S_y;
-    v->rus_S_z = rus_S_z;
-    v->rus_Kd_1 = rus_Kd_1;
-    v->rus_Kc_1 = rus_Kc_1;
-    v->rus_Ks_1 = rus_Ks_1;
-    v->rus_rho2_1 = rus_rho2_1;
-    v->rus_disc_1 = rus_disc_1;
-    v->rus_root_1 = rus_root_1;
-    v->inv_rus_rho2_1 = inv_rus_rho2_1;
-    v->rus_xi_1_t = rus_xi_1_t;
-    v->rus_x_2_in_axes1_x = rus_x_2_in_axes1_x;
-    v->rus_rho2_2 = rus_rho2_2;
-    v->rus_root_2 = rus_root_2;
-    v->inv_rus_rho2_2 = inv_rus_rho2_2;
+    /* (rus-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real rus_u_1_x = omega_y*v->rus_S_dot_t_3 - omega_z*v->rus_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real rus_u_1_y = omega_z*v->rus_S_dot_t - omega_x*v->rus_S_dot_t_3;
+    const real rus_u_1_z = omega_x*v->rus_S_dot_t_2 - omega_y*v->rus_S_dot_t;
+    const real rus_u_1_in_axes3_x = v->axis_x_rus_axes3_x*rus_u_1_x +
+        v->axis_x_rus_axes3_y*rus_u_1_y + v->axis_x_rus_axes3_z*rus_u_1_z;
+    const real rus_u_1_in_axes3_y = v->axis_y_rus_axes3_x*rus_u_1_x +
+        v->axis_y_rus_axes3_y*rus_u_1_y + v->axis_y_rus_axes3_z*rus_u_1_z;
+    const real rus_u_1_in_axes3_z = v->axis_z_rus_axes3_x*rus_u_1_x +
+        v->axis_z_rus_axes3_y*rus_u_1_y + v->axis_z_rus_axes3_z*rus_u_1_z;
+    /* (rus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - v->rus_bias_in_axes3_x;
+    const real rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - v->rus_bias_in_axes3_y;
+    const real rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - v->rus_bias_in_axes3_z;
+    /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rus_qdd_1_o_t = v->inv_rus_v_1_t_2*rus_rel_o_in_axes3_x;
+    /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
+    const real rus_qdd_3_o = -m->rus_w_3_in_axes3_y[i]*(rus_qdd_1_o_t*v->rus_v_1_t_3 -
+        rus_rel_o_in_axes3_y);
+    /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rus_alpha_2_o_in_axes2_z = v->rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
+        rus_qdd_1_o_t*v->rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
+    const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v->rus_e_1_in_axes3_x;
+    const real rus_alpha_2_o_in_axes3_y = -v->rus_J_3_t_17*rus_alpha_2_o_in_axes2_z;
+    /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real rus_alpha_3_o_in_axes3_x = v->rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
+    const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - v->rus_W_3_in_axes3_xz;
+    /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real rus_B_3_o_in_axes3_xy = v->rus_W_3_in_axes3_xy - rus_qdd_3_o;
+    const real rus_B_3_o_in_axes3_yx = v->rus_W_3_in_axes3_xy + rus_qdd_3_o;
+    const real rus_B_3_o_in_axes3_zx = v->rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
+    const real rus_B_3_o_in_axes3_zy = v->rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
+    /* (rus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real rus_acc_3_o_in_axes3_x = rus_u_1_in_axes3_x - v->rus_g_in_axes3_x;
+    const real rus_acc_3_o_in_axes3_y = rus_u_1_in_axes3_y - v->rus_g_in_axes3_y;
+    const real rus_acc_3_o_in_axes3_z = rus_u_1_in_axes3_z - v->rus_g_in_axes3_z;
+    /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] -
+        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
+        rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] - v->rus_mu_3_t_4 +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
+        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
+        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
+    const real rus_mu_3_o_in_axes3_y = rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_x[i] - v->rus_mu_3_t_5 +
+        rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y -
+        rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
+        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
+    const real rus_mu_3_o_in_axes3_z = rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_x[i] +
+        rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_z[i] - v->rus_mu_3_t_6 +
+        rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
+        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
+        rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
+        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y;
+    const real rus_mu_3_o_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
+        v->rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
+    /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rus_mu_1_o_in_axes1_z = -v->rus_mu_1_t_3 -
+        m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o_t;
+    /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
+    /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v->rus_w_2_in_axes3_z;
+    const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
+    /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rus_c_o_in_axes3_x = v->rus_c_t +
+        rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
+        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
+        v->inv_rus_v_1_t_2*(rus_G_o_in_axes3_y*v->rus_v_1_t_3 + rus_N_1_o_in_axes1_z -
+        rus_G_o_in_axes3_z*v->rus_v_1_in_axes3_z);
+    const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        v->rus_c_t_2 - rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
+    const real rus_c_o_in_axes3_z = v->rus_c_t_3 +
+        rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
+        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_z;
+    /* (rus-U) velocity and gravity terms of the leg force */
+    v->rus_U_x = -v->axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
+        v->axis_z_rus_axes3_x*rus_c_o_in_axes3_z - v->axis_x_rus_axes3_x*rus_c_o_in_axes3_x;
+    v->rus_U_y = -v->axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
+        v->axis_z_rus_axes3_y*rus_c_o_in_axes3_z - v->axis_x_rus_axes3_y*rus_c_o_in_axes3_x;
+    v->rus_U_z = -v->axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
+        v->axis_z_rus_axes3_z*rus_c_o_in_axes3_z - v->axis_x_rus_axes3_z*rus_c_o_in_axes3_x;
+    /* (Z_a) rotational part of Z */
+    v->rus_Z_a_t = v->rus_U_z*v->rus_q_y - v->rus_U_y*v->rus_q_z;
+    v->rus_Z_a_t_2 = v->rus_U_x*v->rus_q_z - v->rus_U_z*v->rus_q_x;
+    v->rus_Z_a_t_3 = v->rus_U_y*v->rus_q_x - v->rus_U_x*v->rus_q_y;
 }
 
 INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
 {
-    /* (rus-w_1) reciprocal vector 1 */
-    const real axis_x_rus_axes3_x = v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_z -
-        v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_y;
-    const real axis_x_rus_axes3_y = v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_x -
-        v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_z;
-    const real axis_x_rus_axes3_z = v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_y -
-        v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_x;
-    const real rus_w_1_t_7 = axis_x_rus_axes3_x*v->inv_rus_v_1_t_2;
-    const real rus_w_1_t_8 = axis_x_rus_axes3_y*v->inv_rus_v_1_t_2;
-    const real rus_w_1_t_9 = axis_x_rus_axes3_z*v->inv_rus_v_1_t_2;
-    /* (rus-qd_1) rate of joint 1 */
-    const real rus_qd_1_t = v->inv_rus_v_1_t_2*(axis_x_rus_axes3_x*v->rus_S_dot_x +
-        axis_x_rus_axes3_y*v->rus_S_dot_y + axis_x_rus_axes3_z*v->rus_S_dot_z);
-    /* (rus-qd_3) rate of joint 3 */
-    const real rus_qd_3_t = v->axis_y_rus_axes3_x*v->rus_S_dot_x +
-        v->axis_y_rus_axes3_y*v->rus_S_dot_y + v->axis_y_rus_axes3_z*v->rus_S_dot_z -
-        rus_qd_1_t*v->rus_v_1_t_3;
-    const real rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
-    /* (rus-omega_1) angular velocity of link 1 */
-    const real rus_omega_1_in_axes3_x = -v->rus_e_1_in_axes3_x*rus_qd_1_t;
-    const real rus_omega_1_in_axes3_y = v->rus_c_3*rus_qd_1_t;
-    /* (rus-omega_2) angular velocity of link 2 */
-    const real rus_omega_2_in_axes2_z =
-        v->rus_w_2_in_axes3_z*(v->axis_z_rus_axes3_x*v->rus_S_dot_x +
-        v->axis_z_rus_axes3_y*v->rus_S_dot_y + v->axis_z_rus_axes3_z*v->rus_S_dot_z +
-        rus_qd_1_t*v->rus_v_1_in_axes3_z) - rus_qd_1_t;
-    const real rus_omega_2_in_axes3_x = v->rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-    const real rus_omega_2_in_axes3_y = -v->rus_c_3*rus_omega_2_in_axes2_z;
-    /* (rus-W_3) centripetal tensor of link 3 */
-    const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
-    const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
-    const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
-    /* (rus-S_ddot) acceleration of the connection point */
-    const real rus_S_ddot_in_axes3_x = axis_x_rus_axes3_x*v->rus_S_ddot_x +
-        axis_x_rus_axes3_y*v->rus_S_ddot_y + axis_x_rus_axes3_z*v->rus_S_ddot_z;
-    const real rus_S_ddot_in_axes3_y = v->axis_y_rus_axes3_x*v->rus_S_ddot_x +
-        v->axis_y_rus_axes3_y*v->rus_S_ddot_y + v->axis_y_rus_axes3_z*v->rus_S_ddot_z;
-    const real rus_S_ddot_in_axes3_z = v->axis_z_rus_axes3_x*v->rus_S_ddot_x +
-        v->axis_z_rus_axes3_y*v->rus_S_ddot_y + v->axis_z_rus_axes3_z*v->rus_S_ddot_z;
-    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    const real rus_bias_t_2 = v->rus_bias_t*v->rus_c_3*rus_omega_1_in_axes3_y -
-        v->rus_bias_t*v->rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
-    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
-        - rus_bias_t_2*rus_omega_1_in_axes3_y;
-    const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
-        rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
-        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
-        rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
-    /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-    const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
-    const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
-    const real rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z;
-    /* (rus-qdd_1) acceleration of joint 1 */
-    const real rus_qdd_1_t = v->inv_rus_v_1_t_2*rus_rel_in_axes3_x;
-    /* (rus-qdd_3) acceleration of joint 3 */
-    const real rus_qdd_3_t = m->rus_w_3_in_axes3_y[i]*(rus_qdd_1_t*v->rus_v_1_t_3 -
-        rus_rel_in_axes3_y);
     /* (rus-alpha_2) angular acceleration of link 2 */
-    const real rus_alpha_2_in_axes2_z = v->rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
-        rus_qdd_1_t*v->rus_v_1_in_axes3_z) - rus_qdd_1_t;
+    const real rus_alpha_2_in_axes2_z = v->rus_qdd_2 - v->rus_qdd_1_t;
     const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*v->rus_e_1_in_axes3_x;
-    const real rus_alpha_2_in_axes3_y = -rus_alpha_2_in_axes2_z*v->rus_c_3;
+    const real rus_alpha_2_in_axes3_y = -v->rus_J_3_t_17*rus_alpha_2_in_axes2_z;
     /* (rus-alpha_3) angular acceleration of link 3 */
-    const real rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
-    const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz;
+    const real rus_alpha_3_in_axes3_x = v->rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
+    const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - v->rus_W_3_in_axes3_xz;
     /* (rus-B_3) acceleration tensor of link 3 */
-    const real rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t;
-    const real rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t;
-    const real rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
-    const real rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
+    const real rus_B_3_in_axes3_xy = v->rus_W_3_in_axes3_xy + v->rus_qdd_3_t;
+    const real rus_B_3_in_axes3_yx = v->rus_W_3_in_axes3_xy - v->rus_qdd_3_t;
+    const real rus_B_3_in_axes3_zx = v->rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
+    const real rus_B_3_in_axes3_zy = v->rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
     /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*m->gravity_x
-        - axis_x_rus_axes3_y*m->gravity_y - axis_x_rus_axes3_z*m->gravity_z;
-    const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y -
-        v->axis_y_rus_axes3_x*m->gravity_x - v->axis_y_rus_axes3_y*m->gravity_y -
-        v->axis_y_rus_axes3_z*m->gravity_z;
-    const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z -
-        v->axis_z_rus_axes3_x*m->gravity_x - v->axis_z_rus_axes3_y*m->gravity_y -
-        v->axis_z_rus_axes3_z*m->gravity_z;
+    v->rus_acc_3_in_axes3_x = v->rus_S_ddot_in_axes3_x - v->rus_g_in_axes3_x;
+    v->rus_acc_3_in_axes3_y = v->rus_S_ddot_in_axes3_y - v->rus_g_in_axes3_y;
+    v->rus_acc_3_in_axes3_z = v->rus_S_ddot_in_axes3_z - v->rus_g_in_axes3_z;
     /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-    const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
-    const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
-    const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
     const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] -
-        rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
-        rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_y[i] -
-        m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_t_2 - rus_mu_3_t_3) +
+        v->rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
+        v->rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_y[i] - v->rus_mu_3_t_4 +
         m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_x +
         rus_B_3_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
         rus_B_3_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
-    const real rus_mu_3_in_axes3_y = rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_x[i] - m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_t
-        - rus_mu_3_t_3) + rus_B_3_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+    const real rus_mu_3_in_axes3_y = v->rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        v->rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_x[i] - v->rus_mu_3_t_5 +
+        rus_B_3_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
         m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_y -
         rus_B_3_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
         rus_B_3_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
-    const real rus_mu_3_in_axes3_z = rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_x[i] +
-        rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_z[i] - m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_t
-        - rus_mu_3_t_2) + rus_B_3_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
+    const real rus_mu_3_in_axes3_z = v->rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_x[i] +
+        v->rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_z[i] - v->rus_mu_3_t_6 +
+        rus_B_3_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] -
+        rus_B_3_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] +
         m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_in_axes3_x -
-        rus_B_3_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
         m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_in_axes3_y;
     const real rus_mu_3_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x -
-        v->rus_c_3*rus_mu_3_in_axes3_y;
+        v->rus_J_3_t_17*rus_mu_3_in_axes3_y;
     /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rus_mu_1_in_axes1_z = m->rus_h_1_in_spec1_y[i]*(v->rus_c_1*m->rus_mu_1_t[i] +
-        m->rus_mu_1_t_2[i]*v->rus_s_1) -
-        m->rus_h_1_in_spec1_x[i]*(v->rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v->rus_s_1)
-        - m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_t;
+    const real rus_mu_1_in_axes1_z = -v->rus_mu_1_t_3 -
+        m->rus_J_1_in_spec1_zz[i]*v->rus_qdd_1_t;
     /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
@@ -2172,36 +2111,21 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
     const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*m->rus_w_3_in_axes3_y[i];
     /* (rus-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rus_c_in_axes3_x = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_t_3 + rus_mu_3_t_2) +
-        rus_B_3_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
+    v->rus_c_in_axes3_x = v->rus_c_t + rus_B_3_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
         rus_alpha_2_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
         v->inv_rus_v_1_t_2*(rus_G_in_axes3_y*v->rus_v_1_t_3 + rus_N_1_in_axes1_z -
         rus_G_in_axes3_z*v->rus_v_1_in_axes3_z);
-    const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_t_3 + rus_mu_3_t) -
+    v->rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*m->rus_h_3_in_spec3_y[i] - v->rus_c_t_2 -
         rus_B_3_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_in_axes3_y;
-    const real rus_c_in_axes3_z = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_t + rus_mu_3_t_2) +
-        rus_B_3_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
+    v->rus_c_in_axes3_z = v->rus_c_t_3 + rus_B_3_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
         rus_B_3_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_in_axes3_z;
-    v->axis_x_rus_axes3_x = axis_x_rus_axes3_x;
-    v->axis_x_rus_axes3_y = axis_x_rus_axes3_y;
-    v->axis_x_rus_axes3_z = axis_x_rus_axes3_z;
-    v->rus_w_1_t_7 = rus_w_1_t_7;
-    v->rus_w_1_t_8 = rus_w_1_t_8;
-    v->rus_w_1_t_9 = rus_w_1_t_9;
-    v->rus_acc_3_in_axes3_x = rus_acc_3_in_axes3_x;
-    v->rus_acc_3_in_axes3_y = rus_acc_3_in_axes3_y;
-    v->rus_acc_3_in_axes3_z = rus_acc_3_in_axes3_z;
-    v->rus_c_in_axes3_x = rus_c_in_axes3_x;
-    v->rus_c_in_axes3_y = rus_c_in_axes3_y;
-    v->rus_c_in_axes3_z = rus_c_in_axes3_z;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2213,30 +2137,28 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
-    stage_V_X(w, k, V, v);
-    stage_M_dynamics(m, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
-    s[18*w + k] = v->Z_p_x;
-    s[19*w + k] = v->Z_p_y;
-    s[20*w + k] = v->Z_p_z;
-    s[21*w + k] = v->Z_q_x;
-    s[22*w + k] = v->Z_q_y;
-    s[23*w + k] = v->Z_q_z;
+    s[27*w + k] = v->Z_p_x;
+    s[28*w + k] = v->Z_p_y;
+    s[29*w + k] = v->Z_p_z;
+    s[30*w + k] = v->Z_q_x;
+    s[31*w + k] = v->Z_q_y;
+    s[32*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2244,275 +2166,51 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_rus v;
     stage_rus_X(m, w, i, j, s, X, &v);
-    stage_rus_V_X(w, j, V, &v);
-    stage_rus_M_dynamics(m, w, i, j, X, &v);
-    /* (rus-w_1) reciprocal vector 1 */
-    const real rus_w_1_t = v.rus_c_1*v.rus_s_2_t - v.rus_c_2*v.rus_s_1;
-    const real rus_w_1_t_2 = v.rus_c_1*v.rus_c_2 + v.rus_s_1*v.rus_s_2_t;
-    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t +
-        m->rus_base_frame_xy[i]*rus_w_1_t_2;
-    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t +
-        m->rus_base_frame_yy[i]*rus_w_1_t_2;
-    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t +
-        m->rus_base_frame_zy[i]*rus_w_1_t_2;
-    const real rus_w_1_t_3 = v.rus_c_2*v.rus_e_1_in_axes3_x;
-    const real rus_w_1_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
-    const real rus_w_1_t_5 = v.rus_c_1*rus_w_1_t_3 + v.rus_s_1*rus_w_1_t_4;
-    const real rus_w_1_t_6 = v.rus_s_1*rus_w_1_t_3 - v.rus_c_1*rus_w_1_t_4;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 -
-        v.rus_J_3_t_17*m->rus_base_frame_xz[i] + m->rus_base_frame_xy[i]*rus_w_1_t_6;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 -
-        v.rus_J_3_t_17*m->rus_base_frame_yz[i] + m->rus_base_frame_yy[i]*rus_w_1_t_6;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 -
-        v.rus_J_3_t_17*m->rus_base_frame_zz[i] + m->rus_base_frame_zy[i]*rus_w_1_t_6;
-    const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-        axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-    const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-        axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-    const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-        axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-    const real rus_w_1_t_7 = axis_x_rus_axes3_x*v.inv_rus_v_1_t_2;
-    const real rus_w_1_t_8 = axis_x_rus_axes3_y*v.inv_rus_v_1_t_2;
-    const real rus_w_1_t_9 = axis_x_rus_axes3_z*v.inv_rus_v_1_t_2;
-    /* (rus-qd_1) rate of joint 1 */
-    const real rus_qd_1_t = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*v.rus_S_dot_x +
-        axis_x_rus_axes3_y*v.rus_S_dot_y + axis_x_rus_axes3_z*v.rus_S_dot_z);
-    /* (rus-qd_3) rate of joint 3 */
-    const real rus_qd_3_t = axis_y_rus_axes3_x*v.rus_S_dot_x +
-        axis_y_rus_axes3_y*v.rus_S_dot_y + axis_y_rus_axes3_z*v.rus_S_dot_z -
-        rus_qd_1_t*v.rus_v_1_t_3;
-    const real rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
-    /* (rus-omega_1) angular velocity of link 1 */
-    const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t;
-    const real rus_omega_1_in_axes3_y = v.rus_J_3_t_17*rus_qd_1_t;
-    /* (rus-omega_2) angular velocity of link 2 */
-    const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*v.rus_S_dot_x
-        + axis_z_rus_axes3_y*v.rus_S_dot_y + axis_z_rus_axes3_z*v.rus_S_dot_z +
-        rus_qd_1_t*v.rus_v_1_in_axes3_z) - rus_qd_1_t;
-    const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-    const real rus_omega_2_in_axes3_y = -v.rus_J_3_t_17*rus_omega_2_in_axes2_z;
-    /* (rus-W_3) centripetal tensor of link 3 */
-    const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
-    const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
-    const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
-    /* (rus-u_1) centripetal acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real rus_u_1_x = omega_y*v.rus_S_dot_t_3 - omega_z*v.rus_S_dot_t_2;
-    const real omega_x = V[3*w + j];
-    const real rus_u_1_y = omega_z*v.rus_S_dot_t - omega_x*v.rus_S_dot_t_3;
-    const real rus_u_1_z = omega_x*v.rus_S_dot_t_2 - omega_y*v.rus_S_dot_t;
-    const real rus_u_1_in_axes3_x = axis_x_rus_axes3_x*rus_u_1_x +
-        axis_x_rus_axes3_y*rus_u_1_y + axis_x_rus_axes3_z*rus_u_1_z;
-    const real rus_u_1_in_axes3_y = axis_y_rus_axes3_x*rus_u_1_x +
-        axis_y_rus_axes3_y*rus_u_1_y + axis_y_rus_axes3_z*rus_u_1_z;
-    const real rus_u_1_in_axes3_z = axis_z_rus_axes3_x*rus_u_1_x +
-        axis_z_rus_axes3_y*rus_u_1_y + axis_z_rus_axes3_z*rus_u_1_z;
-    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    const real rus_bias_t = v.rus_c_2*m->rus_joint2_offset_x[i];
-    const real rus_d_2_in_axes3_z = m->rus_joint2_offset_x[i]*v.rus_s_2_t;
-    const real rus_bias_t_2 = v.rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
-        rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
-    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
-        - rus_bias_t_2*rus_omega_1_in_axes3_y;
-    const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
-        rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
-        rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
-        rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
-    /* (rus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - rus_bias_in_axes3_x;
-    const real rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - rus_bias_in_axes3_y;
-    const real rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - rus_bias_in_axes3_z;
-    /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rus_qdd_1_o_t = v.inv_rus_v_1_t_2*rus_rel_o_in_axes3_x;
-    /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
-    const real rus_qdd_3_o = -m->rus_w_3_in_axes3_y[i]*(rus_qdd_1_o_t*v.rus_v_1_t_3 -
-        rus_rel_o_in_axes3_y);
-    /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rus_alpha_2_o_in_axes2_z = v.rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
-        rus_qdd_1_o_t*v.rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
-    const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
-    const real rus_alpha_2_o_in_axes3_y = -v.rus_J_3_t_17*rus_alpha_2_o_in_axes2_z;
-    /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
-    const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
-    /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
-    const real rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o;
-    const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
-    const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
-    const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
-    /* (rus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real rus_acc_3_o_in_axes3_x = rus_u_1_in_axes3_x - axis_x_rus_axes3_x*m->gravity_x -
-        axis_x_rus_axes3_y*m->gravity_y - axis_x_rus_axes3_z*m->gravity_z;
-    const real rus_acc_3_o_in_axes3_y = rus_u_1_in_axes3_y - axis_y_rus_axes3_x*m->gravity_x -
-        axis_y_rus_axes3_y*m->gravity_y - axis_y_rus_axes3_z*m->gravity_z;
-    const real rus_acc_3_o_in_axes3_z = rus_u_1_in_axes3_z - axis_z_rus_axes3_x*m->gravity_x -
-        axis_z_rus_axes3_y*m->gravity_y - axis_z_rus_axes3_z*m->gravity_z;
-    /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-       reference points */
-    const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
-    const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
-    const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
-    const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] -
-        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
-        rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] -
-        m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2 - rus_mu_3_o_t_3) +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
-        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
-        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
-    const real rus_mu_3_o_in_axes3_y = rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_x[i] -
-        m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t - rus_mu_3_o_t_3) +
-        rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y -
-        rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
-        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
-    const real rus_mu_3_o_in_axes3_z = rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_x[i] +
-        rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_z[i] -
-        m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) +
-        rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
-        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
-        rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
-        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y;
-    const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
-        v.rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
-    /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rus_mu_1_o_in_axes1_z = m->rus_h_1_in_spec1_y[i]*(v.rus_c_1*m->rus_mu_1_t[i] +
-        m->rus_mu_1_t_2[i]*v.rus_s_1) - m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i]
-        - m->rus_mu_1_t[i]*v.rus_s_1) - m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o_t;
-    /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
-    /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
-    const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
-    /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rus_c_o_in_axes3_x = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t_2)
-        + rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
-        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
-        v.inv_rus_v_1_t_2*(rus_G_o_in_axes3_y*v.rus_v_1_t_3 + rus_N_1_o_in_axes1_z -
-        rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z);
-    const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t) -
-        rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
-    const real rus_c_o_in_axes3_z = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) +
-        rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
-        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_z;
-    /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rus_Q_t = v.rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
-    const real rus_Q_t_2 = R(0.5)*rus_Q_t;
-    const real rus_Q_t_3 = v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
-        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i] +
-        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_c_in_axes3_xx;
-    const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
-    const real rus_Q_t_5 = axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz +
-        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_x*rus_Q_t_2;
-    const real rus_Q_t_6 = axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz +
-        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_y*rus_Q_t_2;
-    const real rus_Q_t_7 = axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz +
-        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_z*rus_Q_t_2;
-    const real rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 -
-        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
-    const real rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 -
-        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xz;
-    const real rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 -
-        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
-    const real rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 - axis_z_rus_axes3_x*rus_Q_t_8;
-    const real rus_Q_xx = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_11;
-    const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_9 + axis_z_rus_axes3_y*rus_Q_t_8 -
-        axis_y_rus_axes3_x*rus_Q_t_6 - axis_y_rus_axes3_y*rus_Q_t_5;
-    const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8 -
-        axis_y_rus_axes3_x*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_5;
-    const real rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 - axis_z_rus_axes3_y*rus_Q_t_9;
-    const real rus_Q_yy = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_12;
-    const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9 -
-        axis_y_rus_axes3_y*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_6;
-    const real rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 - axis_z_rus_axes3_z*rus_Q_t_10;
-    const real rus_Q_zz = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_13;
-    /* (rus-U) velocity and gravity terms of the leg force */
-    const real rus_U_x = -axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
-        axis_z_rus_axes3_x*rus_c_o_in_axes3_z - axis_x_rus_axes3_x*rus_c_o_in_axes3_x;
-    const real rus_U_y = -axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
-        axis_z_rus_axes3_y*rus_c_o_in_axes3_z - axis_x_rus_axes3_y*rus_c_o_in_axes3_x;
-    const real rus_U_z = -axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
-        axis_z_rus_axes3_z*rus_c_o_in_axes3_z - axis_x_rus_axes3_z*rus_c_o_in_axes3_x;
-    /* (M_ta) coupling block of M */
-    const real rus_M_ta_t = -rus_Q_xy*v.rus_q_z;
-    const real rus_M_ta_t_2 = rus_Q_xz*v.rus_q_y;
-    const real rus_M_ta_t_3 = rus_M_ta_t + rus_M_ta_t_2;
-    const real rus_M_ta_t_4 = rus_Q_xx*v.rus_q_z - rus_Q_xz*v.rus_q_x;
-    const real rus_M_ta_t_5 = rus_Q_xy*v.rus_q_x - rus_Q_xx*v.rus_q_y;
-    const real rus_M_ta_t_6 = rus_Q_yz*v.rus_q_y - rus_Q_yy*v.rus_q_z;
-    const real rus_M_ta_t_7 = rus_Q_yz*v.rus_q_x;
-    const real rus_M_ta_t_8 = rus_M_ta_t + rus_M_ta_t_7;
-    const real rus_M_ta_t_9 = rus_Q_yy*v.rus_q_x - rus_Q_xy*v.rus_q_y;
-    const real rus_M_ta_t_10 = rus_Q_zz*v.rus_q_y - rus_Q_yz*v.rus_q_z;
-    const real rus_M_ta_t_11 = rus_Q_xz*v.rus_q_z - rus_Q_zz*v.rus_q_x;
-    const real rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2;
-    /* (M_aa) rotational block of M */
-    const real rus_M_aa_t = rus_M_ta_t_10*v.rus_q_y - rus_M_ta_t_6*v.rus_q_z;
-    const real rus_M_aa_t_2 = rus_M_ta_t_11*v.rus_q_y + rus_M_ta_t_8*v.rus_q_z;
-    const real rus_M_aa_t_3 = rus_M_ta_t_12*v.rus_q_y - rus_M_ta_t_9*v.rus_q_z;
-    const real rus_M_aa_t_4 = rus_M_ta_t_4*v.rus_q_z - rus_M_ta_t_11*v.rus_q_x;
-    const real rus_M_aa_t_5 = rus_M_ta_t_5*v.rus_q_z - rus_M_ta_t_12*v.rus_q_x;
-    const real rus_M_aa_t_6 = rus_M_ta_t_9*v.rus_q_x - rus_M_ta_t_5*v.rus_q_y;
-    /* (Z_a) rotational part of Z */
-    const real rus_Z_a_t = rus_U_z*v.rus_q_y - rus_U_y*v.rus_q_z;
-    const real rus_Z_a_t_2 = rus_U_x*v.rus_q_z - rus_U_z*v.rus_q_x;
-    const real rus_Z_a_t_3 = rus_U_y*v.rus_q_x - rus_U_x*v.rus_q_y;
-    /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-    const real rus_H_a_1_x = v.rus_q_z*rus_w_1_t_8 - v.rus_q_y*rus_w_1_t_9;
-    const real rus_H_a_1_y = v.rus_q_x*rus_w_1_t_9 - v.rus_q_z*rus_w_1_t_7;
-    const real rus_H_a_1_z = v.rus_q_y*rus_w_1_t_7 - v.rus_q_x*rus_w_1_t_8;
+    stage_rus_V_X(m, w, i, j, V, &v);
+    stage_rus_M_dynamics(m, i, &v);
+    stage_rus_Z_dynamics(m, w, i, j, V, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rus_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, rus_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, rus_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, rus_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, rus_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, rus_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, rus_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, rus_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, rus_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, rus_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, rus_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, rus_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, rus_M_ta_t_12);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, rus_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, rus_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, rus_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, rus_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, rus_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, rus_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.rus_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rus_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rus_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.rus_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.rus_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.rus_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.rus_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.rus_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.rus_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.rus_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.rus_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v.rus_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.rus_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.rus_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.rus_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.rus_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.rus_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.rus_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.rus_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.rus_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.rus_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, rus_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, rus_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, rus_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[24*count + k], add, rus_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, rus_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, rus_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (rus-w_1) */
-    o[0*count + k] = -rus_w_1_t_7;
-    o[1*count + k] = -rus_w_1_t_8;
-    o[2*count + k] = -rus_w_1_t_9;
-    /* (rus-H_a_1) */
-    o[3*count + k] = rus_H_a_1_x;
-    o[4*count + k] = rus_H_a_1_y;
-    o[5*count + k] = rus_H_a_1_z;
-    o[8*count + k] = (rus_w_1_t_7 + (rus_w_1_t_8 + rus_w_1_t_9)) + (rus_H_a_1_x + (rus_H_a_1_y
-        + rus_H_a_1_z));
+    gather(&terms[21*count + k], add, v.rus_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, v.rus_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, v.rus_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[24*count + k], add, v.rus_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, v.rus_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, v.rus_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (rus-w_1) reciprocal vector 1 */
+    o[0*count + k] = -v.rus_w_1_t_7;
+    o[1*count + k] = -v.rus_w_1_t_8;
+    o[2*count + k] = -v.rus_w_1_t_9;
+    /* (rus-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.rus_H_a_1_x;
+    o[4*count + k] = v.rus_H_a_1_y;
+    o[5*count + k] = v.rus_H_a_1_z;
+    o[8*count + k] = (v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9)) + (v.rus_H_a_1_x +
+        (v.rus_H_a_1_y + v.rus_H_a_1_z));
     o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
         TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
@@ -2522,7 +2220,7 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void dynamics_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2536,7 +2234,7 @@ INLINE void dynamics_place_rus(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2547,58 +2245,58 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
-    const real Z_p_x = s[18*w + k];
+    const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[21*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
+    const real Z_p_y = s[28*w + k];
     const real Z_t_y_of_legs = sums[22*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
+    const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[23*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
-    const real Z_q_x = s[21*w + k];
+    const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
-    const real Z_q_y = s[22*w + k];
+    const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
-    const real Z_q_z = s[23*w + k];
+    const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2623,9 +2321,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
@@ -2654,15 +2352,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     Z[4*w + k] = Z_a_y;
     Z[5*w + k] = Z_a_z;
     t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
         (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
-    real s[24] = {0}, sums[27] = {0};
+    real s[33] = {0}, sums[27] = {0};
     real terms_rus[27*LEGS(LEGS_OF_rus)] = {0}, o_rus[9*LEGS(LEGS_OF_rus)] = {0};
     values v;
     dynamics_before(m, 1, 0, X, &v, s, t);
@@ -2680,9 +2378,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[27*LANES];
+    real s[33*LANES], sums[27*LANES];
     real o_rus[9*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2705,7 +2403,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 
 /* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2717,21 +2415,16 @@ INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, value
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
-{
-    stage_M_dynamics(m, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2739,106 +2432,31 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rus v;
     stage_rus_X(m, w, i, j, s, X, &v);
-    stage_rus_M_dynamics(m, w, i, j, X, &v);
-    /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rus_Q_t = v.rus_c_1*v.rus_s_2_t - v.rus_c_2*v.rus_s_1;
-    const real rus_Q_t_2 = v.rus_c_1*v.rus_c_2 + v.rus_s_1*v.rus_s_2_t;
-    const real axis_z_rus_axes3_x = rus_Q_t*m->rus_base_frame_xx[i] +
-        rus_Q_t_2*m->rus_base_frame_xy[i];
-    const real axis_z_rus_axes3_y = rus_Q_t*m->rus_base_frame_yx[i] +
-        rus_Q_t_2*m->rus_base_frame_yy[i];
-    const real axis_z_rus_axes3_z = rus_Q_t*m->rus_base_frame_zx[i] +
-        rus_Q_t_2*m->rus_base_frame_zy[i];
-    const real rus_Q_t_3 = v.rus_c_2*v.rus_e_1_in_axes3_x;
-    const real rus_Q_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
-    const real rus_Q_t_5 = rus_Q_t_3*v.rus_c_1 + rus_Q_t_4*v.rus_s_1;
-    const real rus_Q_t_6 = rus_Q_t_3*v.rus_s_1 - rus_Q_t_4*v.rus_c_1;
-    const real axis_y_rus_axes3_x = rus_Q_t_5*m->rus_base_frame_xx[i] -
-        v.rus_J_3_t_17*m->rus_base_frame_xz[i] + rus_Q_t_6*m->rus_base_frame_xy[i];
-    const real axis_y_rus_axes3_y = rus_Q_t_5*m->rus_base_frame_yx[i] -
-        v.rus_J_3_t_17*m->rus_base_frame_yz[i] + rus_Q_t_6*m->rus_base_frame_yy[i];
-    const real axis_y_rus_axes3_z = rus_Q_t_5*m->rus_base_frame_zx[i] -
-        v.rus_J_3_t_17*m->rus_base_frame_zz[i] + rus_Q_t_6*m->rus_base_frame_zy[i];
-    const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-        axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-    const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-        axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-    const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-        axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-    const real rus_Q_t_7 = v.rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
-    const real rus_Q_t_8 = R(0.5)*rus_Q_t_7;
-    const real rus_Q_t_9 = v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
-        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i] +
-        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_c_in_axes3_xx;
-    const real rus_Q_t_10 = R(0.5)*rus_Q_t_9;
-    const real rus_Q_t_11 = axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz +
-        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_x*rus_Q_t_8;
-    const real rus_Q_t_12 = axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz +
-        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_y*rus_Q_t_8;
-    const real rus_Q_t_13 = axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz +
-        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_z*rus_Q_t_8;
-    const real rus_Q_t_14 = axis_z_rus_axes3_x*rus_Q_t_10 -
-        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
-    const real rus_Q_t_15 = axis_z_rus_axes3_y*rus_Q_t_10 -
-        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xz;
-    const real rus_Q_t_16 = axis_z_rus_axes3_z*rus_Q_t_10 -
-        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
-    const real rus_Q_t_17 = axis_y_rus_axes3_x*rus_Q_t_11 - axis_z_rus_axes3_x*rus_Q_t_14;
-    const real rus_Q_xx = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_17;
-    const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_15 + axis_z_rus_axes3_y*rus_Q_t_14 -
-        axis_y_rus_axes3_x*rus_Q_t_12 - axis_y_rus_axes3_y*rus_Q_t_11;
-    const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_14 -
-        axis_y_rus_axes3_x*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_11;
-    const real rus_Q_t_18 = axis_y_rus_axes3_y*rus_Q_t_12 - axis_z_rus_axes3_y*rus_Q_t_15;
-    const real rus_Q_yy = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_18;
-    const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_15 -
-        axis_y_rus_axes3_y*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_12;
-    const real rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16;
-    const real rus_Q_zz = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_19;
-    /* (M_ta) coupling block of M */
-    const real rus_M_ta_t = -rus_Q_xy*v.rus_q_z;
-    const real rus_M_ta_t_2 = rus_Q_xz*v.rus_q_y;
-    const real rus_M_ta_t_3 = rus_M_ta_t + rus_M_ta_t_2;
-    const real rus_M_ta_t_4 = rus_Q_xx*v.rus_q_z - rus_Q_xz*v.rus_q_x;
-    const real rus_M_ta_t_5 = rus_Q_xy*v.rus_q_x - rus_Q_xx*v.rus_q_y;
-    const real rus_M_ta_t_6 = rus_Q_yz*v.rus_q_y - rus_Q_yy*v.rus_q_z;
-    const real rus_M_ta_t_7 = rus_Q_yz*v.rus_q_x;
-    const real rus_M_ta_t_8 = rus_M_ta_t + rus_M_ta_t_7;
-    const real rus_M_ta_t_9 = rus_Q_yy*v.rus_q_x - rus_Q_xy*v.rus_q_y;
-    const real rus_M_ta_t_10 = rus_Q_zz*v.rus_q_y - rus_Q_yz*v.rus_q_z;
-    const real rus_M_ta_t_11 = rus_Q_xz*v.rus_q_z - rus_Q_zz*v.rus_q_x;
-    const real rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2;
-    /* (M_aa) rotational block of M */
-    const real rus_M_aa_t = rus_M_ta_t_10*v.rus_q_y - rus_M_ta_t_6*v.rus_q_z;
-    const real rus_M_aa_t_2 = rus_M_ta_t_11*v.rus_q_y + rus_M_ta_t_8*v.rus_q_z;
-    const real rus_M_aa_t_3 = rus_M_ta_t_12*v.rus_q_y - rus_M_ta_t_9*v.rus_q_z;
-    const real rus_M_aa_t_4 = rus_M_ta_t_4*v.rus_q_z - rus_M_ta_t_11*v.rus_q_x;
-    const real rus_M_aa_t_5 = rus_M_ta_t_5*v.rus_q_z - rus_M_ta_t_12*v.rus_q_x;
-    const real rus_M_aa_t_6 = rus_M_ta_t_9*v.rus_q_x - rus_M_ta_t_5*v.rus_q_y;
+    stage_rus_M_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rus_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, rus_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, rus_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, rus_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, rus_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, rus_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, rus_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, rus_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, rus_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, rus_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, rus_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, rus_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, rus_M_ta_t_12);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, rus_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, rus_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, rus_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, rus_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, rus_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, rus_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.rus_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rus_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rus_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.rus_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.rus_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.rus_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.rus_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.rus_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.rus_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.rus_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.rus_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v.rus_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.rus_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.rus_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.rus_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.rus_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.rus_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.rus_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.rus_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.rus_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.rus_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
         TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
@@ -2847,14 +2465,14 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
-INLINE void M_place_rus(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_rus(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2865,37 +2483,37 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -2921,9 +2539,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
@@ -2944,14 +2562,14 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(5*NV + 4)*w + k] = M_aa_yz;
     M[(5*NV + 5)*w + k] = M_aa_zz;
     t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
         (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
         M_aa_zz))));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[18] = {0}, sums[21] = {0};
+    real s[27] = {0}, sums[21] = {0};
     real terms_rus[21*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
     values v;
     M_before(m, 1, 0, X, &v, s, t);
@@ -2964,18 +2582,17 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
-    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
-    real s[18*LANES], sums[21*LANES];
+    real s[27*LANES], sums[21*LANES];
     real o_rus[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         M_before(m, LANES, k, X, &v, s, t);
-        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
@@ -2993,7 +2610,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 
 /* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3010,14 +2627,13 @@ INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, value
 
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[9*w + k] = v->Z_p_x;
-    s[10*w + k] = v->Z_p_y;
-    s[11*w + k] = v->Z_p_z;
-    s[12*w + k] = v->Z_q_x;
-    s[13*w + k] = v->Z_q_y;
-    s[14*w + k] = v->Z_q_z;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3025,207 +2641,51 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rus v;
     stage_rus_X(m, w, i, j, s, X, &v);
-    stage_rus_V_X(w, j, V, &v);
-    /* (rus-qd_1) rate of joint 1 */
-    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_xy[i]*v.rus_qd_1_t_2;
-    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
-    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_xz[i]*v.rus_c_3 + m->rus_base_frame_xy[i]*v.rus_qd_1_t_6;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_yz[i]*v.rus_c_3 + m->rus_base_frame_yy[i]*v.rus_qd_1_t_6;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_zz[i]*v.rus_c_3 + m->rus_base_frame_zy[i]*v.rus_qd_1_t_6;
-    const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-        axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-    const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-        axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-    const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-        axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-    const real rus_qd_1_t_7 = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*v.rus_S_dot_x +
-        axis_x_rus_axes3_y*v.rus_S_dot_y + axis_x_rus_axes3_z*v.rus_S_dot_z);
-    /* (rus-qd_3) rate of joint 3 */
-    const real rus_qd_3_t = axis_y_rus_axes3_x*v.rus_S_dot_x +
-        axis_y_rus_axes3_y*v.rus_S_dot_y + axis_y_rus_axes3_z*v.rus_S_dot_z -
-        rus_qd_1_t_7*v.rus_v_1_t_3;
-    const real rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
-    /* (rus-omega_1) angular velocity of link 1 */
-    const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t_7;
-    const real rus_omega_1_in_axes3_y = v.rus_c_3*rus_qd_1_t_7;
-    /* (rus-omega_2) angular velocity of link 2 */
-    const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*v.rus_S_dot_x
-        + axis_z_rus_axes3_y*v.rus_S_dot_y + axis_z_rus_axes3_z*v.rus_S_dot_z +
-        rus_qd_1_t_7*v.rus_v_1_in_axes3_z) - rus_qd_1_t_7;
-    const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-    const real rus_omega_2_in_axes3_y = -v.rus_c_3*rus_omega_2_in_axes2_z;
-    /* (rus-W_3) centripetal tensor of link 3 */
-    const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
-    const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
-    const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
-    /* (rus-u_1) centripetal acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real rus_u_1_x = omega_y*v.rus_S_dot_t_3 - omega_z*v.rus_S_dot_t_2;
-    const real omega_x = V[3*w + j];
-    const real rus_u_1_y = omega_z*v.rus_S_dot_t - omega_x*v.rus_S_dot_t_3;
-    const real rus_u_1_z = omega_x*v.rus_S_dot_t_2 - omega_y*v.rus_S_dot_t;
-    const real rus_u_1_in_axes3_x = axis_x_rus_axes3_x*rus_u_1_x +
-        axis_x_rus_axes3_y*rus_u_1_y + axis_x_rus_axes3_z*rus_u_1_z;
-    const real rus_u_1_in_axes3_y = axis_y_rus_axes3_x*rus_u_1_x +
-        axis_y_rus_axes3_y*rus_u_1_y + axis_y_rus_axes3_z*rus_u_1_z;
-    const real rus_u_1_in_axes3_z = axis_z_rus_axes3_x*rus_u_1_x +
-        axis_z_rus_axes3_y*rus_u_1_y + axis_z_rus_axes3_z*rus_u_1_z;
-    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
-        v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
-    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
-        - rus_bias_t_2*rus_omega_1_in_axes3_y;
-    const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
-        rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
-        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
-        rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
-    /* (rus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - rus_bias_in_axes3_x;
-    const real rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - rus_bias_in_axes3_y;
-    const real rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - rus_bias_in_axes3_z;
-    /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rus_qdd_1_o_t = v.inv_rus_v_1_t_2*rus_rel_o_in_axes3_x;
-    /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
-    const real rus_qdd_3_o = -m->rus_w_3_in_axes3_y[i]*(rus_qdd_1_o_t*v.rus_v_1_t_3 -
-        rus_rel_o_in_axes3_y);
-    /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rus_alpha_2_o_in_axes2_z = v.rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
-        rus_qdd_1_o_t*v.rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
-    const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
-    const real rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*v.rus_c_3;
-    /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
-    const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
-    /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
-    const real rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o;
-    const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
-    const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
-    const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
-    /* (rus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real rus_acc_3_o_in_axes3_x = rus_u_1_in_axes3_x - axis_x_rus_axes3_x*m->gravity_x -
-        axis_x_rus_axes3_y*m->gravity_y - axis_x_rus_axes3_z*m->gravity_z;
-    const real rus_acc_3_o_in_axes3_y = rus_u_1_in_axes3_y - axis_y_rus_axes3_x*m->gravity_x -
-        axis_y_rus_axes3_y*m->gravity_y - axis_y_rus_axes3_z*m->gravity_z;
-    const real rus_acc_3_o_in_axes3_z = rus_u_1_in_axes3_z - axis_z_rus_axes3_x*m->gravity_x -
-        axis_z_rus_axes3_y*m->gravity_y - axis_z_rus_axes3_z*m->gravity_z;
-    /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-       reference points */
-    const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
-    const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
-    const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
-    const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] -
-        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
-        rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] -
-        m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2 - rus_mu_3_o_t_3) +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
-        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
-        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
-    const real rus_mu_3_o_in_axes3_y = rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_x[i] -
-        m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t - rus_mu_3_o_t_3) +
-        rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y -
-        rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
-        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
-    const real rus_mu_3_o_in_axes3_z = rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_x[i] +
-        rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_z[i] -
-        m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) +
-        rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
-        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
-        rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
-        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y;
-    const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
-        v.rus_c_3*rus_mu_3_o_in_axes3_y;
-    /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rus_mu_1_o_in_axes1_z = m->rus_h_1_in_spec1_y[i]*(v.rus_c_1*m->rus_mu_1_t[i] +
-        m->rus_mu_1_t_2[i]*v.rus_s_1) - m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i]
-        - m->rus_mu_1_t[i]*v.rus_s_1) - m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o_t;
-    /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
-    /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
-    const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
-    /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rus_c_o_in_axes3_x = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t_2)
-        + rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
-        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
-        v.inv_rus_v_1_t_2*(rus_G_o_in_axes3_y*v.rus_v_1_t_3 + rus_N_1_o_in_axes1_z -
-        rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z);
-    const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t) -
-        rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
-    const real rus_c_o_in_axes3_z = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) +
-        rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
-        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_z;
-    /* (rus-U) velocity and gravity terms of the leg force */
-    const real rus_U_x = -axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
-        axis_z_rus_axes3_x*rus_c_o_in_axes3_z - axis_x_rus_axes3_x*rus_c_o_in_axes3_x;
-    const real rus_U_y = -axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
-        axis_z_rus_axes3_y*rus_c_o_in_axes3_z - axis_x_rus_axes3_y*rus_c_o_in_axes3_x;
-    const real rus_U_z = -axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
-        axis_z_rus_axes3_z*rus_c_o_in_axes3_z - axis_x_rus_axes3_z*rus_c_o_in_axes3_x;
-    /* (Z_a) rotational part of Z */
-    const real rus_Z_a_t = rus_U_z*v.rus_q_y - rus_U_y*v.rus_q_z;
-    const real rus_Z_a_t_2 = rus_U_x*v.rus_q_z - rus_U_z*v.rus_q_x;
-    const real rus_Z_a_t_3 = rus_U_y*v.rus_q_x - rus_U_x*v.rus_q_y;
+    stage_rus_V_X(m, w, i, j, V, &v);
+    stage_rus_Z_dynamics(m, w, i, j, V, &v);
     /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, rus_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, rus_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, rus_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[3*count + k], add, rus_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, rus_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, rus_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(v.rus_v_1_t_2) > TOLERANCE*m->rus_size[i]);
-    o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    gather(&terms[0*count + k], add, v.rus_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.rus_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.rus_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v.rus_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v.rus_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v.rus_Z_a_t_3);  /* Z_a_z_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
-INLINE void Z_place_rus(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_rus(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
-    const real Z_p_x = s[9*w + k];
+    const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[10*w + k];
+    const real Z_p_y = s[19*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[11*w + k];
+    const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[12*w + k];
+    const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[13*w + k];
+    const real Z_q_y = s[22*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[14*w + k];
+    const real Z_q_z = s[23*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
@@ -3238,9 +2698,9 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_rus[6*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
     values v;
     Z_before(m, 1, 0, X, &v, s, t);
@@ -3257,10 +2717,10 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_rus[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3283,7 +2743,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 
 /* ---- H ---- */
 INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3303,7 +2763,6 @@ INLINE void H_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rus v;
     stage_rus_X(m, w, i, j, s, X, &v);
-    stage_rus_H_condition(&v);
     /* (rus-w_1) reciprocal vector 1 */
     o[0*count + k] = -v.rus_w_1_t_7;
     o[1*count + k] = -v.rus_w_1_t_8;
@@ -3314,15 +2773,16 @@ INLINE void H_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[5*count + k] = v.rus_H_a_1_z;
     o[8*count + k] = (v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9)) + (v.rus_H_a_1_x +
         (v.rus_H_a_1_y + v.rus_H_a_1_z));
-    o[7*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
-    o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void H_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -3335,9 +2795,9 @@ INLINE void H_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[8*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_rus[9*LEGS(LEGS_OF_rus)] = {0};
     values v;
     H_before(m, 1, 0, X, &v, s, t);
@@ -3349,9 +2809,10 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_rus[9*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3368,10 +2829,12 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3381,20 +2844,21 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
-    /* (W_p) centripetal tensor of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real W_p_xy = omega_x*omega_y;
-    const real omega_z = V[5*w + k];
-    const real W_p_xz = omega_x*omega_z;
-    const real W_p_yz = omega_y*omega_z;
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -3406,28 +2870,31 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
     const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
-    const real f_p_t = omega_x*omega_x;
-    const real f_p_t_2 = omega_y*omega_y;
-    const real f_p_t_3 = omega_z*omega_z;
+    const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
+        v->W_p_t_4*v->h_star_x;
+    const real f_p_y = a_t_y*m->m_star + v->B_p_yx*v->h_star_x + v->B_p_yz*v->h_star_z -
+        v->W_p_t_5*v->h_star_y;
+    const real f_p_z = a_t_z*m->m_star + v->B_p_zx*v->h_star_x + v->B_p_zy*v->h_star_y -
+        v->W_p_t_6*v->h_star_z;
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    const real mu_p_t = m->J_star_in_platform_xx*omega_in_platform_x +
+        m->J_star_in_platform_xy*omega_in_platform_y +
+        m->J_star_in_platform_xz*omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*omega_in_platform_x +
+        m->J_star_in_platform_yy*omega_in_platform_y +
+        m->J_star_in_platform_yz*omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*omega_in_platform_x +
+        m->J_star_in_platform_yz*omega_in_platform_y +
+        m->J_star_in_platform_zz*omega_in_platform_z;
+    const real alpha_x = A[3*w + k];
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
-        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
-    const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
-        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
-        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
-    /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
@@ -3435,29 +2902,29 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
         a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
+        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
         a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
+        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
         a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
     const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
         v->R_xz*mu_p_in_platform_z;
     const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
         v->R_yz*mu_p_in_platform_z;
     const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
         v->R_zz*mu_p_in_platform_z;
-    s[9*w + k] = f_p_x;
-    s[10*w + k] = f_p_y;
-    s[11*w + k] = f_p_z;
-    s[12*w + k] = mu_p_x;
-    s[13*w + k] = mu_p_y;
-    s[14*w + k] = mu_p_z;
+    s[18*w + k] = f_p_x;
+    s[19*w + k] = f_p_y;
+    s[20*w + k] = f_p_z;
+    s[21*w + k] = mu_p_x;
+    s[22*w + k] = mu_p_y;
+    s[23*w + k] = mu_p_z;
 }
 
 INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3466,9 +2933,8 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_rus v;
     stage_rus_X(m, w, i, j, s, X, &v);
-    stage_rus_A_X(w, j, A, &v);
-    stage_rus_V_X(w, j, V, &v);
-    stage_rus_A_V_X(w, j, V, &v);
+    stage_rus_V_X(m, w, i, j, V, &v);
+    stage_rus_A_V_X(m, w, i, j, s, A, &v);
     stage_rus_legs_required(m, i, &v);
     /* (rus-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -3482,10 +2948,6 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     const real rus_R_a_t = rus_c_y*v.rus_q_z - rus_c_z*v.rus_q_y;
     const real rus_R_a_t_2 = rus_c_z*v.rus_q_x - rus_c_x*v.rus_q_z;
     const real rus_R_a_t_3 = rus_c_x*v.rus_q_y - rus_c_y*v.rus_q_x;
-    /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-    const real rus_H_a_1_x = v.rus_q_z*v.rus_w_1_t_8 - v.rus_q_y*v.rus_w_1_t_9;
-    const real rus_H_a_1_y = v.rus_q_x*v.rus_w_1_t_9 - v.rus_q_z*v.rus_w_1_t_7;
-    const real rus_H_a_1_z = v.rus_q_y*v.rus_w_1_t_7 - v.rus_q_x*v.rus_w_1_t_8;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rus_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rus_c_y);  /* R_t_y_of_legs */
@@ -3498,19 +2960,20 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     o[0*count + k] = -v.rus_w_1_t_7;
     o[1*count + k] = -v.rus_w_1_t_8;
     o[2*count + k] = -v.rus_w_1_t_9;
-    /* (rus-H_a_1) */
-    o[3*count + k] = rus_H_a_1_x;
-    o[4*count + k] = rus_H_a_1_y;
-    o[5*count + k] = rus_H_a_1_z;
-    o[7*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(v.rus_v_1_t_2) > TOLERANCE*m->rus_size[i]);
-    o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    /* (rus-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.rus_H_a_1_x;
+    o[4*count + k] = v.rus_H_a_1_y;
+    o[5*count + k] = v.rus_H_a_1_z;
+    o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void required_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -3526,23 +2989,23 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 {
     /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
-    const real f_p_x = s[9*w + k];
+    const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
-    const real f_p_y = s[10*w + k];
+    const real f_p_y = s[19*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
     const real R_t_z_of_legs = sums[2*w + k];
-    const real f_p_z = s[11*w + k];
+    const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
-    const real mu_p_x = s[12*w + k];
+    const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
-    const real mu_p_y = s[13*w + k];
+    const real mu_p_y = s[22*w + k];
     const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
-    const real mu_p_z = s[14*w + k];
+    const real mu_p_z = s[23*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
@@ -3555,12 +3018,12 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_rus[6*LEGS(LEGS_OF_rus)] = {0}, o_rus[8*LEGS(LEGS_OF_rus)] = {0};
     values v;
-    required_before(m, 1, 0, X, &v, s, t);
+    required_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         required_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, V, A, terms_rus, o_rus);
     }
@@ -3575,13 +3038,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, verdict *restrict t)
+    real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_rus[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s, t);
+        required_before(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3600,7 +3063,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 
 /* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, verdict *t)
+    *v, real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3619,19 +3082,13 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t i, s
     size_t count, const real *s, const real *X, real *o)
 {
     values_rus v;
-    stage_rus_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    stage_rus_X(m, w, i, j, s, X, &v);
     /* (rus-q_1) displacement of joint 1 */
-    const real rus_q_1 = angle(v.inv_rus_rho2_1*(v.rus_Kd_1*v.rus_Ks_1 +
-        v.rus_Kc_1*v.rus_root_1), v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_Kd_1 -
-        v.rus_Ks_1*v.rus_root_1));
+    const real rus_q_1 = angle(v.rus_s_1, v.rus_c_1);
     /* (rus-q_2) displacement of joint 2 */
-    const real rus_q_2 = angle(-v.inv_rus_rho2_2*v.rus_root_2*v.rus_xi_1_t,
-        v.inv_rus_rho2_2*v.rus_root_2*v.rus_x_2_in_axes1_x);
+    const real rus_q_2 = angle(-v.rus_s_2_t, v.rus_c_2);
     /* (rus-q_3) displacement of joint 3 */
-    const real rus_q_3 =
-        angle(-m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*(v.rus_S_x*m->rus_base_frame_xz[i]
-        + v.rus_S_y*m->rus_base_frame_yz[i] + v.rus_S_z*m->rus_base_frame_zz[i]),
-        m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*v.rus_root_2);
+    const real rus_q_3 = angle(-v.rus_e_1_in_axes3_x, v.rus_J_3_t_17);
     /* (rus-q_1) */
     o[0*count + k] = rus_q_1;
     /* (rus-q_2) */
@@ -3639,13 +3096,14 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t i, s
     /* (rus-q_3) */
     o[2*count + k] = rus_q_3;
     o[5*count + k] = rus_q_1 + (rus_q_2 + rus_q_3);
-    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
-    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
+    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void inverse_kinematics_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[3*i*w + k] = o[0*count + at];
     q[(1 + 3*i)*w + k] = o[1*count + at];
@@ -3655,9 +3113,9 @@ INLINE void inverse_kinematics_place_rus(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[5*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
     values v;
     inverse_kinematics_before(m, 1, 0, X, &v, s, t);
@@ -3670,9 +3128,9 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_rus[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3690,7 +3148,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 
 /* ---- joint_rates ---- */
 INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, verdict *t)
+    real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3710,65 +3168,24 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j
 {
     values_rus v;
     stage_rus_X(m, w, i, j, s, X, &v);
-    /* (rus-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real rus_S_dot_x = t_dot_x + omega_y*v.rus_q_z - omega_z*v.rus_q_y;
-    const real omega_x = V[3*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real rus_S_dot_y = t_dot_y + omega_z*v.rus_q_x - omega_x*v.rus_q_z;
-    const real t_dot_z = V[2*w + j];
-    const real rus_S_dot_z = t_dot_z + omega_x*v.rus_q_y - omega_y*v.rus_q_x;
-    /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-    const real rus_v_1_t = v.rus_c_3*v.rus_r_1_in_axes3_z;
+    stage_rus_V_X(m, w, i, j, V, &v);
     /* (rus-qd_1) rate of joint 1 */
-    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_xy[i]*v.rus_qd_1_t_2;
-    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
-    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_xz[i]*v.rus_c_3 + m->rus_base_frame_xy[i]*v.rus_qd_1_t_6;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_yz[i]*v.rus_c_3 + m->rus_base_frame_yy[i]*v.rus_qd_1_t_6;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_zz[i]*v.rus_c_3 + m->rus_base_frame_zy[i]*v.rus_qd_1_t_6;
-    const real rus_qd_1_t_7 = (rus_S_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-        axis_y_rus_axes3_z*axis_z_rus_axes3_y) +
-        rus_S_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-        axis_y_rus_axes3_x*axis_z_rus_axes3_z) +
-        rus_S_dot_z*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-        axis_y_rus_axes3_y*axis_z_rus_axes3_x))/rus_v_1_t;
+    o[0*count + k] = -v.rus_qd_1_t;
     /* (rus-qd_2) rate of joint 2 */
-    const real rus_qd_2_t = v.rus_c_2*v.rus_r_1_in_axes1_x + v.rus_r_1_t_2*v.rus_s_2_t;
-    const real rus_qd_2_t_2 = axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y
-        + axis_z_rus_axes3_z*rus_S_dot_z +
-        rus_qd_1_t_7*(v.rus_c_3*(v.rus_e_1_in_axes3_x*v.rus_r_1_in_axes1_z +
-        v.rus_c_3*rus_qd_2_t) + v.rus_e_1_in_axes3_x*(v.rus_e_1_in_axes3_x*rus_qd_2_t -
-        v.rus_c_3*v.rus_r_1_in_axes1_z));
-    const real rus_qd_2 = rus_qd_2_t_2/v.rus_r_1_t;
+    o[1*count + k] = v.rus_qd_2;
     /* (rus-qd_3) rate of joint 3 */
-    const real rus_qd_3 = m->rus_w_3_in_axes3_y[i]*(axis_y_rus_axes3_x*rus_S_dot_x +
-        axis_y_rus_axes3_y*rus_S_dot_y + axis_y_rus_axes3_z*rus_S_dot_z -
-        v.rus_e_1_in_axes3_x*rus_qd_1_t_7*v.rus_r_1_in_axes3_z);
-    /* (rus-qd_1) */
-    o[0*count + k] = -rus_qd_1_t_7;
-    /* (rus-qd_2) */
-    o[1*count + k] = rus_qd_2;
-    /* (rus-qd_3) */
-    o[2*count + k] = rus_qd_3;
-    o[5*count + k] = rus_qd_1_t_7 + (rus_qd_2 + rus_qd_3);
-    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(rus_v_1_t) > TOLERANCE*m->rus_size[i]);
-    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[2*count + k] = v.rus_qd_3;
+    o[5*count + k] = v.rus_qd_1_t + (v.rus_qd_2 + v.rus_qd_3);
+    o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void joint_rates_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[3*i*w + k] = o[0*count + at];
     qd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -3778,9 +3195,10 @@ INLINE void joint_rates_place_rus(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[5*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
     values v;
     joint_rates_before(m, 1, 0, X, &v, s, t);
@@ -3793,9 +3211,9 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_rus[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3812,10 +3230,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
+    real *V, const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3825,6 +3245,15 @@ INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, co
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -3833,90 +3262,25 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, 
 {
     values_rus v;
     stage_rus_X(m, w, i, j, s, X, &v);
-    stage_rus_A_X(w, j, A, &v);
-    stage_rus_V_X(w, j, V, &v);
-    stage_rus_A_V_X(w, j, V, &v);
-    /* (rus-qd_1) rate of joint 1 */
-    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_xy[i]*v.rus_qd_1_t_2;
-    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
-    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
-        m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_xz[i]*v.rus_c_3 + m->rus_base_frame_xy[i]*v.rus_qd_1_t_6;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_yz[i]*v.rus_c_3 + m->rus_base_frame_yy[i]*v.rus_qd_1_t_6;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 -
-        m->rus_base_frame_zz[i]*v.rus_c_3 + m->rus_base_frame_zy[i]*v.rus_qd_1_t_6;
-    const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-        axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-    const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-        axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-    const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-        axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-    const real rus_qd_1_t_7 = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*v.rus_S_dot_x +
-        axis_x_rus_axes3_y*v.rus_S_dot_y + axis_x_rus_axes3_z*v.rus_S_dot_z);
-    /* (rus-qd_3) rate of joint 3 */
-    const real rus_qd_3_t = axis_y_rus_axes3_x*v.rus_S_dot_x +
-        axis_y_rus_axes3_y*v.rus_S_dot_y + axis_y_rus_axes3_z*v.rus_S_dot_z -
-        rus_qd_1_t_7*v.rus_v_1_t_3;
-    const real rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
-    /* (rus-omega_1) angular velocity of link 1 */
-    const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t_7;
-    const real rus_omega_1_in_axes3_y = v.rus_c_3*rus_qd_1_t_7;
-    /* (rus-omega_2) angular velocity of link 2 */
-    const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*v.rus_S_dot_x
-        + axis_z_rus_axes3_y*v.rus_S_dot_y + axis_z_rus_axes3_z*v.rus_S_dot_z +
-        rus_qd_1_t_7*v.rus_v_1_in_axes3_z) - rus_qd_1_t_7;
-    const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-    const real rus_omega_2_in_axes3_y = -v.rus_c_3*rus_omega_2_in_axes2_z;
-    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
-        v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
-    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
-        - rus_bias_t_2*rus_omega_1_in_axes3_y;
-    const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
-        rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
-        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
-        rus_omega_2_in_axes3_x*m->rus_platform_joint_offset_x[i]*rus_qd_3;
-    /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-    const real rus_rel_in_axes3_x = axis_x_rus_axes3_x*v.rus_S_ddot_x +
-        axis_x_rus_axes3_y*v.rus_S_ddot_y + axis_x_rus_axes3_z*v.rus_S_ddot_z -
-        rus_bias_in_axes3_x;
-    const real rus_rel_in_axes3_y = axis_y_rus_axes3_x*v.rus_S_ddot_x +
-        axis_y_rus_axes3_y*v.rus_S_ddot_y + axis_y_rus_axes3_z*v.rus_S_ddot_z -
-        rus_bias_in_axes3_y;
-    const real rus_rel_in_axes3_z = axis_z_rus_axes3_x*v.rus_S_ddot_x +
-        axis_z_rus_axes3_y*v.rus_S_ddot_y + axis_z_rus_axes3_z*v.rus_S_ddot_z -
-        rus_bias_in_axes3_z;
+    stage_rus_V_X(m, w, i, j, V, &v);
+    stage_rus_A_V_X(m, w, i, j, s, A, &v);
     /* (rus-qdd_1) acceleration of joint 1 */
-    const real rus_qdd_1_t = v.inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+    o[0*count + k] = -v.rus_qdd_1_t;
     /* (rus-qdd_2) acceleration of joint 2 */
-    const real rus_qdd_2 = v.rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
-        rus_qdd_1_t*v.rus_v_1_in_axes3_z);
+    o[1*count + k] = v.rus_qdd_2;
     /* (rus-qdd_3) acceleration of joint 3 */
-    const real rus_qdd_3_t = m->rus_w_3_in_axes3_y[i]*(rus_qdd_1_t*v.rus_v_1_t_3 -
-        rus_rel_in_axes3_y);
-    /* (rus-qdd_1) */
-    o[0*count + k] = -rus_qdd_1_t;
-    /* (rus-qdd_2) */
-    o[1*count + k] = rus_qdd_2;
-    /* (rus-qdd_3) */
-    o[2*count + k] = -rus_qdd_3_t;
-    o[5*count + k] = rus_qdd_1_t + (rus_qdd_2 + rus_qdd_3_t);
-    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(v.rus_v_1_t_2) > TOLERANCE*m->rus_size[i]);
-    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[2*count + k] = -v.rus_qdd_3_t;
+    o[5*count + k] = v.rus_qdd_1_t + (v.rus_qdd_2 + v.rus_qdd_3_t);
+    o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void joint_accelerations_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[3*i*w + k] = o[0*count + at];
     qdd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -3927,12 +3291,12 @@ INLINE void joint_accelerations_place_rus(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s, t);
+    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         joint_accelerations_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, V, A, o_rus);
     }
@@ -3942,13 +3306,13 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_rus[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s, t);
+        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3961,10 +3325,12 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
+    real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3974,6 +3340,15 @@ INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, va
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -3982,9 +3357,8 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_
 {
     values_rus v;
     stage_rus_X(m, w, i, j, s, X, &v);
-    stage_rus_A_X(w, j, A, &v);
-    stage_rus_V_X(w, j, V, &v);
-    stage_rus_A_V_X(w, j, V, &v);
+    stage_rus_V_X(m, w, i, j, V, &v);
+    stage_rus_A_V_X(m, w, i, j, s, A, &v);
     stage_rus_legs_required(m, i, &v);
     /* (rus-c_true) leg force on the platform without actuation, the last link's mass included */
     const real rus_c_true_in_axes3_x = v.rus_c_in_axes3_x -
@@ -4010,15 +3384,16 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_
     o[3*count + k] = -v.rus_w_1_t_7;
     o[4*count + k] = -v.rus_w_1_t_8;
     o[5*count + k] = -v.rus_w_1_t_9;
-    o[7*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(v.rus_v_1_t_2) > TOLERANCE*m->rus_size[i]);
-    o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void legs_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[3*i*w + k] = o[0*count + at];
     leg_force[(3*i + 1)*w + k] = o[1*count + at];
@@ -4031,12 +3406,12 @@ INLINE void legs_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_rus[8*LEGS(LEGS_OF_rus)] = {0};
     values v;
-    legs_before(m, 1, 0, X, &v, s, t);
+    legs_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         legs_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, V, A, o_rus);
     }
@@ -4047,7 +3422,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 
 /* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4069,54 +3444,37 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
-        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
-        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
-        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
-        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
-        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
-    s[9*w + k] = potential_t;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
+        m->gravity_y*(m->m_star*t_y + v->h_star_y) + m->gravity_z*(m->m_star*t_z +
+        v->h_star_z);
+    s[18*w + k] = potential_t;
 }
 
 INLINE void potential_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
     values_rus v;
-    stage_rus_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real rus_c_1 = v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_Kd_1 - v.rus_Ks_1*v.rus_root_1);
-    /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rus_s_1 = v.inv_rus_rho2_1*(v.rus_Kd_1*v.rus_Ks_1 + v.rus_Kc_1*v.rus_root_1);
-    /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real rus_c_2 = v.inv_rus_rho2_2*v.rus_root_2*v.rus_x_2_in_axes1_x;
-    /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rus_s_2_t = v.inv_rus_rho2_2*v.rus_root_2*v.rus_xi_1_t;
-    /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-    const real rus_c_3 =
-        m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*v.rus_root_2;
+    stage_rus_X(m, w, i, j, s, X, &v);
     /* (potential) */
-    const real rus_e_1_in_axes3_x =
-        m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*(v.rus_S_x*m->rus_base_frame_xz[i]
-        + v.rus_S_y*m->rus_base_frame_yz[i] + v.rus_S_z*m->rus_base_frame_zz[i]);
-    const real rus_potential_t_4 = rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i] -
-        rus_c_3*m->rus_h_3_in_spec3_x[i];
-    const real rus_potential_t_5 = m->rus_g_in_axes1_z[i]*(m->rus_h_1_in_spec1_z[i] +
-        m->rus_potential_t_3[i] + rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_x[i] +
-        rus_c_3*m->rus_h_3_in_spec3_z[i]) + (rus_c_1*m->rus_mu_1_t[i] +
-        m->rus_mu_1_t_2[i]*rus_s_1)*(m->rus_h_1_in_spec1_x[i] +
-        m->rus_link1_mass[i]*(rus_c_1*m->rus_potential_t[i] + m->rus_potential_t_2[i]*rus_s_1)
-        + m->rus_h_3_in_spec3_y[i]*rus_s_2_t - rus_c_2*rus_potential_t_4) +
-        (rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*rus_s_1)*(m->rus_h_1_in_spec1_y[i] +
-        m->rus_link1_mass[i]*(rus_c_1*m->rus_potential_t_2[i] - m->rus_potential_t[i]*rus_s_1)
-        + rus_c_2*m->rus_h_3_in_spec3_y[i] + rus_potential_t_4*rus_s_2_t);
+    const real rus_potential_t_4 = m->rus_g_in_axes1_z[i]*(m->rus_h_1_in_spec1_z[i] +
+        m->rus_potential_t_3[i] + v.rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_x[i] +
+        v.rus_J_3_t_17*m->rus_h_3_in_spec3_z[i]) +
+        v.rus_g_in_axes1_x*(m->rus_h_1_in_spec1_x[i] +
+        m->rus_link1_mass[i]*(v.rus_c_1*m->rus_potential_t[i] +
+        m->rus_potential_t_2[i]*v.rus_s_1) + m->rus_h_3_in_spec3_y[i]*v.rus_s_2_t -
+        v.rus_c_2*v.rus_d_Gamma_2_t_2) + v.rus_g_in_axes1_y*(m->rus_h_1_in_spec1_y[i] +
+        m->rus_link1_mass[i]*(v.rus_c_1*m->rus_potential_t_2[i] -
+        m->rus_potential_t[i]*v.rus_s_1) + v.rus_c_2*m->rus_h_3_in_spec3_y[i] +
+        v.rus_d_Gamma_2_t_2*v.rus_s_2_t);
     /* (potential) */
-    gather(&terms[0*count + k], add, rus_potential_t_5);  /* potential_of_legs */
-    o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
-    o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    gather(&terms[0*count + k], add, rus_potential_t_4);  /* potential_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
+    o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
-INLINE void potential_place_rus(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_rus(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -4126,15 +3484,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 {
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
-    const real potential_t = s[9*w + k];
+    const real potential_t = s[18*w + k];
     const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[10] = {0}, sums[1] = {0};
+    real s[19] = {0}, sums[1] = {0};
     real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
     values v;
     potential_before(m, 1, 0, X, &v, s, t);
@@ -4153,7 +3511,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4176,13 +3534,12 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rus v;
     stage_rus_X(m, w, i, j, s, X, &v);
-    stage_rus_H_condition(&v);
     /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real rus_pivot_size = magnitude(v.rus_rho2_1);
-    const real rus_pivot_size_2 = magnitude(v.rus_rho2_2);
+    const real rus_pivot_size = magnitude(v.rus_J_3_t_10);
+    const real rus_pivot_size_2 = magnitude(v.rus_J_3_t_15);
     const real rus_pivot_size_3 = magnitude(v.rus_r_1_t);
-    const real rus_pivot_size_4 = magnitude(v.rus_v_1_t);
+    const real rus_pivot_size_4 = magnitude(v.rus_v_1_t_2);
     const real rus_least_pivots =
         lesser(lesser(lesser(root(m->inv_rus_rho2_1_t[i]*rus_pivot_size),
         m->inv_rus_size[i]*rus_pivot_size_3), m->inv_rus_size[i]*rus_pivot_size_4),
@@ -4205,18 +3562,19 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
     o[5*count + k] = v.rus_H_a_1_z;
     /* (rus-G) */
     o[6*count + k] = rus_least_pivots;
-    o[7*count + k] = v.rus_disc_1;
+    o[7*count + k] = v.rus_J_3_t_11;
     o[10*count + k] = ((v.rus_w_1_t_7 + v.rus_w_1_t_8) + (v.rus_w_1_t_9 + v.rus_H_a_1_x)) +
-        ((v.rus_H_a_1_y + v.rus_H_a_1_z) + (rus_least_pivots + v.rus_disc_1));
-    o[9*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
-        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
-        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
-        UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
-    o[8*count + k] = UNLESS(v.rus_disc_1 >= 0);
+        ((v.rus_H_a_1_y + v.rus_H_a_1_z) + (rus_least_pivots + v.rus_J_3_t_11));
+    o[9*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[8*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void condition_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *pivots, real *reach, verdict *t)
+    *o, real *H, real *pivots, real *reach, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -4232,7 +3590,7 @@ INLINE void condition_place_rus(size_t w, size_t i, size_t k, size_t at, size_t 
 }
 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
-    *lengths, verdict *t)
+    *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_rus = sums[0*w + k];
@@ -4243,9 +3601,9 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
-    real s[9] = {0}, sums[1] = {0};
+    real s[18] = {0}, sums[1] = {0};
     real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[11*LEGS(LEGS_OF_rus)] = {0};
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -4265,196 +3623,179 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int hexapod_6rus_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int hexapod_6rus_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int hexapod_6rus_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int hexapod_6rus_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int hexapod_6rus_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int hexapod_6rus_joint_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int hexapod_6rus_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -4636,14 +3977,9 @@ int hexapod_6rus_inverse_dynamics(const prepared *m, const real *X, const real *
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -4658,7 +3994,7 @@ int hexapod_6rus_inverse_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    return settled(&why, NU, tau_out);
+    return final_status(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4666,7 +4002,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4677,8 +4013,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_6(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
 }
 
 static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
@@ -4690,14 +4026,9 @@ int hexapod_6rus_forward_dynamics(const prepared *m, const real *X, const real *
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
         subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -4716,7 +4047,7 @@ int hexapod_6rus_forward_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4725,7 +4056,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
         A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4740,8 +4071,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_6(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int hexapod_6rus_complete_acceleration(const prepared *m, const real *X, const real *V, const real
@@ -4751,13 +4082,11 @@ int hexapod_6rus_complete_acceleration(const prepared *m, const real *X, const r
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int hexapod_6rus_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -4765,49 +4094,27 @@ int hexapod_6rus_leg_reactions(const prepared *m, const real *X, const real *V, 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
-        unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0},
-        work[NV*PADDED(NV)];
-    verdict why;
+    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, &why);
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - wrench[i];
-    }
-    eliminate_6(1, NV, order_tau, sizes_tau, H, subtract_1, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NV, 1, H, work);
-        solve_apart(NV, subtract_1, work, solve_1, why.singular);
-        check(NV, 1, solve_1, why.overflow);
-    }
+    flag_status(hexapod_6rus_inverse_dynamics(m, X, V, A, wrench, solve_1), &why);
     legs_run(m, X, V, A, leg_force, actuator, &why);
     for (size_t i = 0; i < 3*NL; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
-    check(3*NL, 1, forces, why.overflow);
-    copy(3*NL, forces, forces_out);
-    return settled(&why, 3*NL, forces_out);
+    return finished(3*NL, forces, forces_out, &why);
 }
 
 int hexapod_6rus_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -4816,8 +4123,8 @@ int hexapod_6rus_energy(const prepared *m, const real *X, const real *V, real *k
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int hexapod_6rus_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -4827,9 +4134,9 @@ int hexapod_6rus_condition(const prepared *m, const real *X, real *sigma_out, re
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
         divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -4849,8 +4156,8 @@ int hexapod_6rus_condition(const prepared *m, const real *X, real *sigma_out, re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int hexapod_6rus_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4860,13 +4167,12 @@ int hexapod_6rus_manipulability(const prepared *m, const real *X, real *measure_
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
         = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4884,8 +4190,8 @@ int hexapod_6rus_manipulability(const prepared *m, const real *X, real *measure_
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int hexapod_6rus_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -4895,13 +4201,12 @@ int hexapod_6rus_singularity_distance(const prepared *m, const real *X, real *ac
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
         = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4919,57 +4224,53 @@ int hexapod_6rus_singularity_distance(const prepared *m, const real *X, real *ac
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    static const size_t places_gap[] = {0, 1, 2, 3, 4, 5};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[6] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
-    verdict why;
+    static const size_t places_residual[] = {0, 1, 2, 3, 4, 5};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[6] = {0}, subtract_1[NU] = {0}, residual[NU] =
+        {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(6, 1, hexapod_6rus_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
         subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = subtract_1[i];
+        residual[i] = subtract_1[i];
     }
-    wrap_turns(NU, 1, places_gap, gap);
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    wrap_turns(NU, 1, places_residual, residual);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -4981,21 +4282,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -5009,17 +4310,11 @@ int hexapod_6rus_forward_kinematics(const prepared *m, const real *q_actuated, c
     real *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int hexapod_6rus_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5028,33 +4323,25 @@ int hexapod_6rus_dissipation(const prepared *m, const real *X, const real *V, re
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int hexapod_6rus_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int hexapod_6rus_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5062,256 +4349,177 @@ int hexapod_6rus_joint_margins(const prepared *m, const real *X, real *margins_o
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int hexapod_6rus_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int hexapod_6rus_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, hexapod_6rus_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int hexapod_6rus_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, hexapod_6rus_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int hexapod_6rus_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, hexapod_6rus_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int hexapod_6rus_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int hexapod_6rus_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
-    check(9, 1, R, why.overflow);
-    copy(9, R, R_out);
-    return settled(&why, 9, R_out);
+    return finished(9, R, R_out, &why);
 }
 
 int hexapod_6rus_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(R, 9);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(9, 1, R, why.invalid);
-    }
+    check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int hexapod_6rus_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const V_from_3 = V + 3;
     const real *const X_from_3 = X + 3;
     quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
-    const real *const V_from_0 = V;
-    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    beside(1, 3, 4, V, quaternion_rate_1, X_dot);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int hexapod_6rus_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(rpy, 3);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(3, 1, rpy, why.invalid);
-    }
+    check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int hexapod_6rus_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
-    const real *const X_from_0 = X;
+    check_two(NQ, X, NV, step, why.invalid);
     const real *const X_from_3 = X + 3;
-    const real *const step_from_0 = step;
     const real *const step_from_3 = step + 3;
     turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X_from_0[i] + step_from_0[i];
+        add_1[i] = X[i] + step[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int hexapod_6rus_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
+    check_two(NQ, X0, NQ, X1, why.invalid);
     const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
     const real *const X1_from_3 = X1 + 3;
     turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
+        subtract_1[i] = X1[i] - X0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int hexapod_6rus_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
-        turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
-    verdict why;
+    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
-    const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
-    const real *const X1_from_3 = X1 + 3;
-    turn_between(X0_from_3, X1_from_3, turn_between_1);
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
-    }
-    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(hexapod_6rus_difference(X0, X1, join_1), &why);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const X0_from_0_2 = X0;
     const real *const X0_from_3_2 = X0 + 3;
-    const real *const scale_1_from_0 = scale_1;
     const real *const scale_1_from_3 = scale_1 + 3;
     turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
+        add_1[i] = X0[i] + scale_1[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

@@ -715,9 +715,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_rus,
         (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
@@ -758,9 +758,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_rus,
         (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
@@ -1559,11 +1559,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1827,8 +1827,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1836,7 +1836,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1844,11 +1844,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1896,15 +1896,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 2235 mul, 1617 add, 24 div, 12 sqrt, 0 trig
+# dynamics: 2202 mul, 1593 add, 24 div, 12 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1986,42 +1985,15 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_rus_zz, M_ta_xx, M_ta_rus_xy,
-        M_ta_rus_xz, M_ta_rus_yx, M_ta_t, M_ta_rus_yz, M_ta_rus_zx, M_ta_rus_zy, M_ta_zz,
+        M_ta_rus_xz, M_ta_rus_yx, M_ta_yy, M_ta_rus_yz, M_ta_rus_zx, M_ta_rus_zy, M_ta_zz,
         M_aa_rus_xx, M_aa_rus_xy, M_aa_rus_xz, M_aa_rus_yy, M_aa_rus_yz, M_aa_rus_zz, Z_t_rus_x,
         Z_t_rus_y, Z_t_rus_z, Z_a_rus_x, Z_a_rus_y, Z_a_rus_z,
     ) = [0.0] * 27
@@ -2159,6 +2131,11 @@ def _run_dynamics(m, X, V):
         inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
         )
+        # (rus-qd_2) rate of joint 2
+        rus_qd_2 = (
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
+            axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z)
+        )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
@@ -2169,10 +2146,7 @@ def _run_dynamics(m, X, V):
         rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
         rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
-            axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z) - rus_qd_1_t
-        )
+        rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
         rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
@@ -2228,7 +2202,6 @@ def _run_dynamics(m, X, V):
         rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x
         rus_alpha_2_o_in_axes3_y = -rus_J_3_t_17*rus_alpha_2_o_in_axes2_z
         # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z
         rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z
         # (rus-alpha_3_o) remainder of: angular acceleration of link 3
         rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x
@@ -2238,44 +2211,47 @@ def _run_dynamics(m, X, V):
         rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o
         rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y
         rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x
+        # (rus-acc_3) acceleration of the reference point of link 3, less gravity
+        rus_g_in_axes3_x = (
+        axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y + axis_x_rus_axes3_z*gravity_z
+        )
+        rus_g_in_axes3_y = (
+        axis_y_rus_axes3_x*gravity_x + axis_y_rus_axes3_y*gravity_y + axis_y_rus_axes3_z*gravity_z
+        )
+        rus_g_in_axes3_z = (
+        axis_z_rus_axes3_x*gravity_x + axis_z_rus_axes3_y*gravity_y + axis_z_rus_axes3_z*gravity_z
+        )
         # (rus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        rus_acc_3_o_in_axes3_x = (
-        rus_u_1_in_axes3_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
-            axis_x_rus_axes3_z*gravity_z
-        )
-        rus_acc_3_o_in_axes3_y = (
-        rus_u_1_in_axes3_y - axis_y_rus_axes3_x*gravity_x - axis_y_rus_axes3_y*gravity_y -
-            axis_y_rus_axes3_z*gravity_z
-        )
-        rus_acc_3_o_in_axes3_z = (
-        rus_u_1_in_axes3_z - axis_z_rus_axes3_x*gravity_x - axis_z_rus_axes3_y*gravity_y -
-            axis_z_rus_axes3_z*gravity_z
-        )
+        rus_acc_3_o_in_axes3_x = rus_u_1_in_axes3_x - rus_g_in_axes3_x
+        rus_acc_3_o_in_axes3_y = rus_u_1_in_axes3_y - rus_g_in_axes3_y
+        rus_acc_3_o_in_axes3_z = rus_u_1_in_axes3_z - rus_g_in_axes3_z
+        # (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
+        rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
+        rus_mu_3_t_3 = rus_qd_3*rus_qd_3
+        rus_mu_3_t_4 = rus_J_3_in_spec3_yz*(rus_mu_3_t_2 - rus_mu_3_t_3)
+        rus_mu_3_t_5 = rus_J_3_in_spec3_xy*(rus_mu_3_t - rus_mu_3_t_3)
+        rus_mu_3_t_6 = rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2)
         # (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
-        rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
-        rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3
         rus_mu_3_o_in_axes3_x = (
         rus_B_3_o_in_axes3_yx*rus_J_3_in_spec3_xy + rus_B_3_o_in_axes3_zx*rus_J_3_in_spec3_xz +
             rus_B_3_o_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_o_t_2
-            - rus_mu_3_o_t_3) - rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_y -
-            rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_z
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x - rus_mu_3_t_4 -
+            rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_y - rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_z
         )
         rus_mu_3_o_in_axes3_y = (
         rus_B_3_o_in_axes3_xy*rus_J_3_in_spec3_yz +
             rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_y +
-            rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_y -
+            rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_y - rus_mu_3_t_5 -
             rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
-            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_o_t -
-            rus_mu_3_o_t_3) - rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_x
+            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_x
         )
         rus_mu_3_o_in_axes3_z = (
         rus_B_3_o_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
             rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x +
             rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_x
-            - rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
-            rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y
+            - rus_mu_3_t_6 - rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy -
+            rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y
         )
         rus_mu_3_o_in_axes1_z = (
         rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x - rus_J_3_t_17*rus_mu_3_o_in_axes3_y
@@ -2288,35 +2264,41 @@ def _run_dynamics(m, X, V):
         )
         # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rus_d_Gamma_2_t = rus_J_3_t_17*rus_h_3_in_spec3_y
-        rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
-        rus_d_Gamma_2_t_3 = -rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
-        rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z
-        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_3
+        rus_d_Gamma_2_t_2 = (
+        rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_J_3_t_17*rus_h_3_in_spec3_x
+        )
+        rus_d_Gamma_2_t_3 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
+        rus_d_Gamma_2_t_4 = -rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
+        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_z
+        rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*rus_v_1_t_3
         rus_d_Gamma_2_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 + rus_d_Gamma_2_t_5 - rus_J_3_in_axes1_zz) -
+        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_3_in_axes1_zz) -
             rus_d_Gamma_2_t
         )
-        rus_d_Gamma_2_in_axes3_y = -rus_d_Gamma_2_t_3 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
-        rus_d_Gamma_2_in_axes3_z = (
-        rus_d_Gamma_2_t_2 + rus_J_3_t_17*rus_h_3_in_spec3_x -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z
-        )
+        rus_d_Gamma_2_in_axes3_y = -rus_d_Gamma_2_t_4 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
+        rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_3 - rus_d_Gamma_2_t_2
+        # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
+        rus_g_in_axes1_y = rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1
+        rus_mu_1_t_3 = rus_g_in_axes1_y*rus_h_1_in_spec1_x - rus_g_in_axes1_x*rus_h_1_in_spec1_y
         # (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rus_mu_1_o_in_axes1_z = (
-        rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
-            rus_J_1_in_spec1_zz*rus_qdd_1_o_t - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 -
-            rus_mu_1_t*rus_s_1)
-        )
+        rus_mu_1_o_in_axes1_z = -rus_mu_1_t_3 - rus_J_1_in_spec1_zz*rus_qdd_1_o_t
         # (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z
         # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rus_d_Gamma_1_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 + rus_d_Gamma_2_t_5 - rus_J_1_in_spec1_zz -
+        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_1_in_spec1_zz -
             rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t
         )
+        # (rus-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        rus_d_G_in_axes3_zy = rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_z
         # (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y
+        # (rus-c) leg force on the platform without actuation and without the mass at the connection point
+        rus_c_t = rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3)
+        rus_c_t_2 = rus_h_3_in_spec3_z*(rus_mu_3_t + rus_mu_3_t_3)
+        rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rus_d_c_in_axes3_xx = (
         inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x + rus_d_Gamma_3_in_axes3_x*rus_w_3_t +
@@ -2331,66 +2313,62 @@ def _run_dynamics(m, X, V):
         inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_Gamma_3_in_axes3_z*rus_w_3_t +
             rus_d_alpha_3_t*rus_h_3_in_spec3_y - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x
         )
-        rus_d_c_in_axes3_yz = (
-        rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y - rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y
-        )
         # (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rus_c_o_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z + rus_G_o_in_axes3_y*rus_v_1_t_3 -
-            rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 + rus_mu_3_o_t_3) -
+        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z + rus_G_o_in_axes3_y*rus_v_1_t_3 -
+            rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y
         )
         rus_c_o_in_axes3_y = (
-        rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y - rus_G_o_in_axes3_y -
-            rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_o_t +
-            rus_mu_3_o_t_3)
+        rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y - rus_G_o_in_axes3_y - rus_c_t_2 -
+            rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x
         )
         rus_c_o_in_axes3_z = (
-        rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_y*(rus_mu_3_o_t +
-            rus_mu_3_o_t_2) - rus_G_o_in_axes3_z - rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x
+        rus_c_t_3 + rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z - rus_G_o_in_axes3_z -
+            rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x
         )
         # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
         rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
         rus_Q_t_2 = 0.5*rus_Q_t
         rus_Q_t_3 = (
         rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z +
-            rus_d_alpha_3_t*rus_h_3_in_spec3_x - rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z
+            rus_d_alpha_3_t*rus_h_3_in_spec3_x -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z*rus_w_2_in_axes3_z
         )
         rus_Q_t_4 = 0.5*rus_Q_t_3
         rus_Q_t_5 = (
-        axis_x_rus_axes3_x*rus_d_c_in_axes3_xy + axis_z_rus_axes3_x*rus_d_c_in_axes3_yz -
-            axis_y_rus_axes3_x*rus_Q_t_2
+        axis_y_rus_axes3_x*rus_Q_t_2 + axis_z_rus_axes3_x*rus_d_G_in_axes3_zy -
+            axis_x_rus_axes3_x*rus_d_c_in_axes3_xy
         )
         rus_Q_t_6 = (
-        axis_x_rus_axes3_y*rus_d_c_in_axes3_xy + axis_z_rus_axes3_y*rus_d_c_in_axes3_yz -
-            axis_y_rus_axes3_y*rus_Q_t_2
+        axis_y_rus_axes3_y*rus_Q_t_2 + axis_z_rus_axes3_y*rus_d_G_in_axes3_zy -
+            axis_x_rus_axes3_y*rus_d_c_in_axes3_xy
         )
         rus_Q_t_7 = (
-        axis_x_rus_axes3_z*rus_d_c_in_axes3_xy + axis_z_rus_axes3_z*rus_d_c_in_axes3_yz -
-            axis_y_rus_axes3_z*rus_Q_t_2
+        axis_y_rus_axes3_z*rus_Q_t_2 + axis_z_rus_axes3_z*rus_d_G_in_axes3_zy -
+            axis_x_rus_axes3_z*rus_d_c_in_axes3_xy
         )
         rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 - axis_x_rus_axes3_x*rus_d_c_in_axes3_xz
         rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 - axis_x_rus_axes3_y*rus_d_c_in_axes3_xz
         rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 - axis_x_rus_axes3_z*rus_d_c_in_axes3_xz
-        rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 - axis_z_rus_axes3_x*rus_Q_t_8
-        rus_Q_xx = -2.0*rus_Q_t_11 - rus_d_c_in_axes3_xx
+        rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_8
+        rus_Q_xx = 2.0*rus_Q_t_11 - rus_d_c_in_axes3_xx
         rus_Q_xy = (
-        axis_z_rus_axes3_x*rus_Q_t_9 + axis_z_rus_axes3_y*rus_Q_t_8 - axis_y_rus_axes3_x*rus_Q_t_6
-            - axis_y_rus_axes3_y*rus_Q_t_5
+        axis_y_rus_axes3_x*rus_Q_t_6 + axis_y_rus_axes3_y*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_9
+            + axis_z_rus_axes3_y*rus_Q_t_8
         )
         rus_Q_xz = (
-        axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8 -
-            axis_y_rus_axes3_x*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_5
+        axis_y_rus_axes3_x*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_5 +
+            axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8
         )
-        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 - axis_z_rus_axes3_y*rus_Q_t_9
-        rus_Q_yy = -2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
+        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 + axis_z_rus_axes3_y*rus_Q_t_9
+        rus_Q_yy = 2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
         rus_Q_yz = (
-        axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9 -
-            axis_y_rus_axes3_y*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_6
+        axis_y_rus_axes3_y*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_6 +
+            axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9
         )
-        rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 - axis_z_rus_axes3_z*rus_Q_t_10
-        rus_Q_zz = -2.0*rus_Q_t_13 - rus_d_c_in_axes3_xx
+        rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 + axis_z_rus_axes3_z*rus_Q_t_10
+        rus_Q_zz = 2.0*rus_Q_t_13 - rus_d_c_in_axes3_xx
         # (rus-U) velocity and gravity terms of the leg force
         rus_U_x = (
         -axis_x_rus_axes3_x*rus_c_o_in_axes3_x - axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
@@ -2405,21 +2383,21 @@ def _run_dynamics(m, X, V):
             axis_z_rus_axes3_z*rus_c_o_in_axes3_z
         )
         # (M_ta) coupling block of M
-        rus_M_ta_t = -rus_Q_xy*rus_q_z
+        rus_M_ta_t = rus_Q_xy*rus_q_z
         rus_M_ta_t_2 = rus_Q_xz*rus_q_y
-        rus_M_ta_t_3 = rus_M_ta_t + rus_M_ta_t_2
+        rus_M_ta_t_3 = rus_M_ta_t_2 - rus_M_ta_t
         rus_M_ta_t_4 = rus_Q_xx*rus_q_z - rus_Q_xz*rus_q_x
         rus_M_ta_t_5 = rus_Q_xy*rus_q_x - rus_Q_xx*rus_q_y
         rus_M_ta_t_6 = rus_Q_yz*rus_q_y - rus_Q_yy*rus_q_z
         rus_M_ta_t_7 = rus_Q_yz*rus_q_x
-        rus_M_ta_t_8 = rus_M_ta_t + rus_M_ta_t_7
+        rus_M_ta_t_8 = rus_M_ta_t - rus_M_ta_t_7
         rus_M_ta_t_9 = rus_Q_yy*rus_q_x - rus_Q_xy*rus_q_y
         rus_M_ta_t_10 = rus_Q_zz*rus_q_y - rus_Q_yz*rus_q_z
         rus_M_ta_t_11 = rus_Q_xz*rus_q_z - rus_Q_zz*rus_q_x
         rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2
         # (M_aa) rotational block of M
         rus_M_aa_t = rus_M_ta_t_10*rus_q_y - rus_M_ta_t_6*rus_q_z
-        rus_M_aa_t_2 = rus_M_ta_t_11*rus_q_y + rus_M_ta_t_8*rus_q_z
+        rus_M_aa_t_2 = rus_M_ta_t_11*rus_q_y - rus_M_ta_t_8*rus_q_z
         rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_y - rus_M_ta_t_9*rus_q_z
         rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_z - rus_M_ta_t_11*rus_q_x
         rus_M_aa_t_5 = rus_M_ta_t_5*rus_q_z - rus_M_ta_t_12*rus_q_x
@@ -2449,7 +2427,7 @@ def _run_dynamics(m, X, V):
         M_ta_rus_xy += rus_M_ta_t_4
         M_ta_rus_xz += rus_M_ta_t_5
         M_ta_rus_yx += rus_M_ta_t_6
-        M_ta_t += rus_M_ta_t_8
+        M_ta_yy += rus_M_ta_t_8
         M_ta_rus_yz += rus_M_ta_t_9
         M_ta_rus_zx += rus_M_ta_t_10
         M_ta_rus_zy += rus_M_ta_t_11
@@ -2522,8 +2500,8 @@ def _run_dynamics(m, X, V):
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -M_ta_t
-    out_M[25] = -M_ta_t
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
@@ -2553,7 +2531,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 1293 mul, 903 add, 24 div, 12 sqrt, 0 trig
+# M: 1287 mul, 897 add, 24 div, 12 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2621,7 +2599,7 @@ def _run_M(m, X):
     J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
     M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_rus_zz, M_ta_xx, M_ta_rus_xy,
-        M_ta_rus_xz, M_ta_rus_yx, M_ta_t, M_ta_rus_yz, M_ta_rus_zx, M_ta_rus_zy, M_ta_zz,
+        M_ta_rus_xz, M_ta_rus_yx, M_ta_yy, M_ta_rus_yz, M_ta_rus_zx, M_ta_rus_zy, M_ta_zz,
         M_aa_rus_xx, M_aa_rus_xy, M_aa_rus_xz, M_aa_rus_yy, M_aa_rus_yz, M_aa_rus_zz,
     ) = [0.0] * 21
     for leg, k in legs[0]:
@@ -2705,6 +2683,36 @@ def _run_M(m, X):
             rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
+        rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
+        rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
+        rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
+        rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
+        axis_y_rus_axes3_x = (
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
+        )
+        axis_y_rus_axes3_y = (
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
+        )
+        axis_y_rus_axes3_z = (
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
+        )
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
+        )
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
+        )
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
+        )
         inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
         # (rus-w_2) reciprocal vector 2
         rus_w_2_in_axes3_z = 1.0/rus_r_1_t
@@ -2712,7 +2720,6 @@ def _run_M(m, X):
         # (rus-w_3) reciprocal vector 3
         rus_w_3_t = inv_rus_v_1_t_2*rus_v_1_t_3*rus_w_3_in_axes3_y
         # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z
         rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z
         # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z
@@ -2722,24 +2729,26 @@ def _run_M(m, X):
         )
         # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rus_d_Gamma_2_t = rus_J_3_t_17*rus_h_3_in_spec3_y
-        rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
-        rus_d_Gamma_2_t_3 = -rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
-        rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z
-        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_3
+        rus_d_Gamma_2_t_2 = (
+        rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_J_3_t_17*rus_h_3_in_spec3_x
+        )
+        rus_d_Gamma_2_t_3 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
+        rus_d_Gamma_2_t_4 = -rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
+        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_z
+        rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*rus_v_1_t_3
         rus_d_Gamma_2_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 + rus_d_Gamma_2_t_5 - rus_J_3_in_axes1_zz) -
+        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_3_in_axes1_zz) -
             rus_d_Gamma_2_t
         )
-        rus_d_Gamma_2_in_axes3_y = -rus_d_Gamma_2_t_3 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
-        rus_d_Gamma_2_in_axes3_z = (
-        rus_d_Gamma_2_t_2 + rus_J_3_t_17*rus_h_3_in_spec3_x -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z
-        )
+        rus_d_Gamma_2_in_axes3_y = -rus_d_Gamma_2_t_4 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
+        rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_3 - rus_d_Gamma_2_t_2
         # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rus_d_Gamma_1_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 + rus_d_Gamma_2_t_5 - rus_J_1_in_spec1_zz -
+        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_1_in_spec1_zz -
             rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t
         )
+        # (rus-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        rus_d_G_in_axes3_zy = rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_z
         # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rus_d_c_in_axes3_xx = (
         inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x + rus_d_Gamma_3_in_axes3_x*rus_w_3_t +
@@ -2754,93 +2763,64 @@ def _run_M(m, X):
         inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_Gamma_3_in_axes3_z*rus_w_3_t +
             rus_d_alpha_3_t*rus_h_3_in_spec3_y - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x
         )
-        rus_d_c_in_axes3_yz = (
-        rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y - rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y
-        )
         # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
-        rus_Q_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
-        rus_Q_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
-        axis_z_rus_axes3_x = rus_Q_t*rus_base_frame_xx + rus_Q_t_2*rus_base_frame_xy
-        axis_z_rus_axes3_y = rus_Q_t*rus_base_frame_yx + rus_Q_t_2*rus_base_frame_yy
-        axis_z_rus_axes3_z = rus_Q_t*rus_base_frame_zx + rus_Q_t_2*rus_base_frame_zy
-        rus_Q_t_3 = rus_c_2*rus_e_1_in_axes3_x
-        rus_Q_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
-        rus_Q_t_5 = rus_Q_t_3*rus_c_1 + rus_Q_t_4*rus_s_1
-        rus_Q_t_6 = rus_Q_t_3*rus_s_1 - rus_Q_t_4*rus_c_1
-        axis_y_rus_axes3_x = (
-        rus_Q_t_5*rus_base_frame_xx + rus_Q_t_6*rus_base_frame_xy - rus_J_3_t_17*rus_base_frame_xz
-        )
-        axis_y_rus_axes3_y = (
-        rus_Q_t_5*rus_base_frame_yx + rus_Q_t_6*rus_base_frame_yy - rus_J_3_t_17*rus_base_frame_yz
-        )
-        axis_y_rus_axes3_z = (
-        rus_Q_t_5*rus_base_frame_zx + rus_Q_t_6*rus_base_frame_zy - rus_J_3_t_17*rus_base_frame_zz
-        )
-        axis_x_rus_axes3_x = (
-        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
-        )
-        axis_x_rus_axes3_y = (
-        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
-        )
-        axis_x_rus_axes3_z = (
-        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
-        )
-        rus_Q_t_7 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
-        rus_Q_t_8 = 0.5*rus_Q_t_7
-        rus_Q_t_9 = (
+        rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
+        rus_Q_t_2 = 0.5*rus_Q_t
+        rus_Q_t_3 = (
         rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z +
-            rus_d_alpha_3_t*rus_h_3_in_spec3_x - rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z
+            rus_d_alpha_3_t*rus_h_3_in_spec3_x -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z*rus_w_2_in_axes3_z
         )
-        rus_Q_t_10 = 0.5*rus_Q_t_9
-        rus_Q_t_11 = (
-        axis_x_rus_axes3_x*rus_d_c_in_axes3_xy + axis_z_rus_axes3_x*rus_d_c_in_axes3_yz -
-            axis_y_rus_axes3_x*rus_Q_t_8
+        rus_Q_t_4 = 0.5*rus_Q_t_3
+        rus_Q_t_5 = (
+        axis_y_rus_axes3_x*rus_Q_t_2 + axis_z_rus_axes3_x*rus_d_G_in_axes3_zy -
+            axis_x_rus_axes3_x*rus_d_c_in_axes3_xy
         )
-        rus_Q_t_12 = (
-        axis_x_rus_axes3_y*rus_d_c_in_axes3_xy + axis_z_rus_axes3_y*rus_d_c_in_axes3_yz -
-            axis_y_rus_axes3_y*rus_Q_t_8
+        rus_Q_t_6 = (
+        axis_y_rus_axes3_y*rus_Q_t_2 + axis_z_rus_axes3_y*rus_d_G_in_axes3_zy -
+            axis_x_rus_axes3_y*rus_d_c_in_axes3_xy
         )
-        rus_Q_t_13 = (
-        axis_x_rus_axes3_z*rus_d_c_in_axes3_xy + axis_z_rus_axes3_z*rus_d_c_in_axes3_yz -
-            axis_y_rus_axes3_z*rus_Q_t_8
+        rus_Q_t_7 = (
+        axis_y_rus_axes3_z*rus_Q_t_2 + axis_z_rus_axes3_z*rus_d_G_in_axes3_zy -
+            axis_x_rus_axes3_z*rus_d_c_in_axes3_xy
         )
-        rus_Q_t_14 = axis_z_rus_axes3_x*rus_Q_t_10 - axis_x_rus_axes3_x*rus_d_c_in_axes3_xz
-        rus_Q_t_15 = axis_z_rus_axes3_y*rus_Q_t_10 - axis_x_rus_axes3_y*rus_d_c_in_axes3_xz
-        rus_Q_t_16 = axis_z_rus_axes3_z*rus_Q_t_10 - axis_x_rus_axes3_z*rus_d_c_in_axes3_xz
-        rus_Q_t_17 = axis_y_rus_axes3_x*rus_Q_t_11 - axis_z_rus_axes3_x*rus_Q_t_14
-        rus_Q_xx = -2.0*rus_Q_t_17 - rus_d_c_in_axes3_xx
+        rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 - axis_x_rus_axes3_x*rus_d_c_in_axes3_xz
+        rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 - axis_x_rus_axes3_y*rus_d_c_in_axes3_xz
+        rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 - axis_x_rus_axes3_z*rus_d_c_in_axes3_xz
+        rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_8
+        rus_Q_xx = 2.0*rus_Q_t_11 - rus_d_c_in_axes3_xx
         rus_Q_xy = (
-        axis_z_rus_axes3_x*rus_Q_t_15 + axis_z_rus_axes3_y*rus_Q_t_14 -
-            axis_y_rus_axes3_x*rus_Q_t_12 - axis_y_rus_axes3_y*rus_Q_t_11
+        axis_y_rus_axes3_x*rus_Q_t_6 + axis_y_rus_axes3_y*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_9
+            + axis_z_rus_axes3_y*rus_Q_t_8
         )
         rus_Q_xz = (
-        axis_z_rus_axes3_x*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_14 -
-            axis_y_rus_axes3_x*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_11
+        axis_y_rus_axes3_x*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_5 +
+            axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8
         )
-        rus_Q_t_18 = axis_y_rus_axes3_y*rus_Q_t_12 - axis_z_rus_axes3_y*rus_Q_t_15
-        rus_Q_yy = -2.0*rus_Q_t_18 - rus_d_c_in_axes3_xx
+        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 + axis_z_rus_axes3_y*rus_Q_t_9
+        rus_Q_yy = 2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
         rus_Q_yz = (
-        axis_z_rus_axes3_y*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_15 -
-            axis_y_rus_axes3_y*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_12
+        axis_y_rus_axes3_y*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_6 +
+            axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9
         )
-        rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16
-        rus_Q_zz = -2.0*rus_Q_t_19 - rus_d_c_in_axes3_xx
+        rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 + axis_z_rus_axes3_z*rus_Q_t_10
+        rus_Q_zz = 2.0*rus_Q_t_13 - rus_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        rus_M_ta_t = -rus_Q_xy*rus_q_z
+        rus_M_ta_t = rus_Q_xy*rus_q_z
         rus_M_ta_t_2 = rus_Q_xz*rus_q_y
-        rus_M_ta_t_3 = rus_M_ta_t + rus_M_ta_t_2
+        rus_M_ta_t_3 = rus_M_ta_t_2 - rus_M_ta_t
         rus_M_ta_t_4 = rus_Q_xx*rus_q_z - rus_Q_xz*rus_q_x
         rus_M_ta_t_5 = rus_Q_xy*rus_q_x - rus_Q_xx*rus_q_y
         rus_M_ta_t_6 = rus_Q_yz*rus_q_y - rus_Q_yy*rus_q_z
         rus_M_ta_t_7 = rus_Q_yz*rus_q_x
-        rus_M_ta_t_8 = rus_M_ta_t + rus_M_ta_t_7
+        rus_M_ta_t_8 = rus_M_ta_t - rus_M_ta_t_7
         rus_M_ta_t_9 = rus_Q_yy*rus_q_x - rus_Q_xy*rus_q_y
         rus_M_ta_t_10 = rus_Q_zz*rus_q_y - rus_Q_yz*rus_q_z
         rus_M_ta_t_11 = rus_Q_xz*rus_q_z - rus_Q_zz*rus_q_x
         rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2
         # (M_aa) rotational block of M
         rus_M_aa_t = rus_M_ta_t_10*rus_q_y - rus_M_ta_t_6*rus_q_z
-        rus_M_aa_t_2 = rus_M_ta_t_11*rus_q_y + rus_M_ta_t_8*rus_q_z
+        rus_M_aa_t_2 = rus_M_ta_t_11*rus_q_y - rus_M_ta_t_8*rus_q_z
         rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_y - rus_M_ta_t_9*rus_q_z
         rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_z - rus_M_ta_t_11*rus_q_x
         rus_M_aa_t_5 = rus_M_ta_t_5*rus_q_z - rus_M_ta_t_12*rus_q_x
@@ -2862,7 +2842,7 @@ def _run_M(m, X):
         M_ta_rus_xy += rus_M_ta_t_4
         M_ta_rus_xz += rus_M_ta_t_5
         M_ta_rus_yx += rus_M_ta_t_6
-        M_ta_t += rus_M_ta_t_8
+        M_ta_yy += rus_M_ta_t_8
         M_ta_rus_yz += rus_M_ta_t_9
         M_ta_rus_zx += rus_M_ta_t_10
         M_ta_rus_zy += rus_M_ta_t_11
@@ -2911,8 +2891,8 @@ def _run_M(m, X):
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -M_ta_t
-    out_M[25] = -M_ta_t
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
@@ -2934,14 +2914,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1473 mul, 1002 add, 24 div, 12 sqrt, 0 trig
+# Z: 1482 mul, 1008 add, 24 div, 12 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2997,6 +2977,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3005,39 +3001,12 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_rus_x, Z_t_rus_y, Z_t_rus_z, Z_a_rus_x, Z_a_rus_y, Z_a_rus_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -3052,7 +3021,7 @@ def _run_Z(m, X, V):
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
             rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,
         ) = k
-        # (rus-S) from the base point to the connection point
+        # (rus-J_3) inertia tensor of link 3 about the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -3062,48 +3031,41 @@ def _run_Z(m, X, V):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
+        )
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-S_dot) velocity of the connection point
         rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
         rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
@@ -3112,48 +3074,40 @@ def _run_Z(m, X, V):
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
-        )
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
         rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
         rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
         rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
         rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
         rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_c_3*(rus_c_3*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
-        # (rus-qd_1) rate of joint 1
-        rus_qd_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
-        rus_qd_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
-        axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t + rus_base_frame_xy*rus_qd_1_t_2
-        axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t + rus_base_frame_yy*rus_qd_1_t_2
-        axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t + rus_base_frame_zy*rus_qd_1_t_2
-        rus_qd_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
-        rus_qd_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
-        rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1
-        rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4
+        rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
+        rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
+        rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
+        rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 -
-            rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 -
-            rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 -
-            rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -3164,26 +3118,32 @@ def _run_Z(m, X, V):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        rus_qd_1_t_7 = (
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        # (rus-w_2) reciprocal vector 2
+        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        # (rus-qd_1) rate of joint 1
+        rus_qd_1_t = (
         inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
+        )
+        # (rus-qd_2) rate of joint 2
+        rus_qd_2 = (
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
+            axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z)
         )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t_7*rus_v_1_t_3
+            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_3
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t_7
-        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t_7
+        rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
-            axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t_7*rus_v_1_in_axes3_z) - rus_qd_1_t_7
-        )
+        rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
@@ -3205,7 +3165,7 @@ def _run_Z(m, X, V):
         rus_bias_t = rus_c_2*rus_joint2_offset_x
         rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         rus_bias_t_2 = (
-        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y -
+        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
             rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
         )
         rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
@@ -3235,7 +3195,7 @@ def _run_Z(m, X, V):
             rus_qdd_1_o_t
         )
         rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x
-        rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*rus_c_3
+        rus_alpha_2_o_in_axes3_y = -rus_J_3_t_17*rus_alpha_2_o_in_axes2_z
         # (rus-alpha_3_o) remainder of: angular acceleration of link 3
         rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x
         rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz
@@ -3244,74 +3204,79 @@ def _run_Z(m, X, V):
         rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o
         rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y
         rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x
+        # (rus-acc_3) acceleration of the reference point of link 3, less gravity
+        rus_g_in_axes3_x = (
+        axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y + axis_x_rus_axes3_z*gravity_z
+        )
+        rus_g_in_axes3_y = (
+        axis_y_rus_axes3_x*gravity_x + axis_y_rus_axes3_y*gravity_y + axis_y_rus_axes3_z*gravity_z
+        )
+        rus_g_in_axes3_z = (
+        axis_z_rus_axes3_x*gravity_x + axis_z_rus_axes3_y*gravity_y + axis_z_rus_axes3_z*gravity_z
+        )
         # (rus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        rus_acc_3_o_in_axes3_x = (
-        rus_u_1_in_axes3_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
-            axis_x_rus_axes3_z*gravity_z
-        )
-        rus_acc_3_o_in_axes3_y = (
-        rus_u_1_in_axes3_y - axis_y_rus_axes3_x*gravity_x - axis_y_rus_axes3_y*gravity_y -
-            axis_y_rus_axes3_z*gravity_z
-        )
-        rus_acc_3_o_in_axes3_z = (
-        rus_u_1_in_axes3_z - axis_z_rus_axes3_x*gravity_x - axis_z_rus_axes3_y*gravity_y -
-            axis_z_rus_axes3_z*gravity_z
-        )
+        rus_acc_3_o_in_axes3_x = rus_u_1_in_axes3_x - rus_g_in_axes3_x
+        rus_acc_3_o_in_axes3_y = rus_u_1_in_axes3_y - rus_g_in_axes3_y
+        rus_acc_3_o_in_axes3_z = rus_u_1_in_axes3_z - rus_g_in_axes3_z
+        # (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
+        rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
+        rus_mu_3_t_3 = rus_qd_3*rus_qd_3
+        rus_mu_3_t_4 = rus_J_3_in_spec3_yz*(rus_mu_3_t_2 - rus_mu_3_t_3)
+        rus_mu_3_t_5 = rus_J_3_in_spec3_xy*(rus_mu_3_t - rus_mu_3_t_3)
+        rus_mu_3_t_6 = rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2)
         # (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
-        rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
-        rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3
         rus_mu_3_o_in_axes3_x = (
         rus_B_3_o_in_axes3_yx*rus_J_3_in_spec3_xy + rus_B_3_o_in_axes3_zx*rus_J_3_in_spec3_xz +
             rus_B_3_o_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_o_t_2
-            - rus_mu_3_o_t_3) - rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_y -
-            rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_z
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x - rus_mu_3_t_4 -
+            rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_y - rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_z
         )
         rus_mu_3_o_in_axes3_y = (
         rus_B_3_o_in_axes3_xy*rus_J_3_in_spec3_yz +
             rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_y +
-            rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_y -
+            rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_y - rus_mu_3_t_5 -
             rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
-            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_o_t -
-            rus_mu_3_o_t_3) - rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_x
+            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_x
         )
         rus_mu_3_o_in_axes3_z = (
         rus_B_3_o_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
             rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x +
             rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_x
-            - rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
-            rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y
+            - rus_mu_3_t_6 - rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy -
+            rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y
         )
         rus_mu_3_o_in_axes1_z = (
-        rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x - rus_c_3*rus_mu_3_o_in_axes3_y
+        rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x - rus_J_3_t_17*rus_mu_3_o_in_axes3_y
         )
+        # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
+        rus_g_in_axes1_y = rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1
+        rus_mu_1_t_3 = rus_g_in_axes1_y*rus_h_1_in_spec1_x - rus_g_in_axes1_x*rus_h_1_in_spec1_y
         # (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rus_mu_1_o_in_axes1_z = (
-        rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
-            rus_J_1_in_spec1_zz*rus_qdd_1_o_t - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 -
-            rus_mu_1_t*rus_s_1)
-        )
+        rus_mu_1_o_in_axes1_z = -rus_mu_1_t_3 - rus_J_1_in_spec1_zz*rus_qdd_1_o_t
         # (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z
         # (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y
+        # (rus-c) leg force on the platform without actuation and without the mass at the connection point
+        rus_c_t = rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3)
+        rus_c_t_2 = rus_h_3_in_spec3_z*(rus_mu_3_t + rus_mu_3_t_3)
+        rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         # (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rus_c_o_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z + rus_G_o_in_axes3_y*rus_v_1_t_3 -
-            rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 + rus_mu_3_o_t_3) -
+        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z + rus_G_o_in_axes3_y*rus_v_1_t_3 -
+            rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y
         )
         rus_c_o_in_axes3_y = (
-        rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y - rus_G_o_in_axes3_y -
-            rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_o_t +
-            rus_mu_3_o_t_3)
+        rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y - rus_G_o_in_axes3_y - rus_c_t_2 -
+            rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x
         )
         rus_c_o_in_axes3_z = (
-        rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_y*(rus_mu_3_o_t +
-            rus_mu_3_o_t_2) - rus_G_o_in_axes3_z - rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x
+        rus_c_t_3 + rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z - rus_G_o_in_axes3_z -
+            rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x
         )
         # (rus-U) velocity and gravity terms of the leg force
         rus_U_x = (
@@ -3331,8 +3296,8 @@ def _run_Z(m, X, V):
         rus_Z_a_t_2 = rus_U_x*rus_q_z - rus_U_z*rus_q_x
         rus_Z_a_t_3 = rus_U_y*rus_q_x - rus_U_x*rus_q_y
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
             _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (Z_t) translational part of Z
@@ -3412,7 +3377,7 @@ def _run_H(m, X):
             rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
         ) = k
-        # (rus-S) from the base point to the connection point
+        # (rus-J_3) inertia tensor of link 3 about the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -3422,58 +3387,49 @@ def _run_H(m, X):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
-        # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*(rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t*rus_s_2_t)
-        # (rus-w_1) reciprocal vector 1
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
         rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
+        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
         axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
@@ -3484,35 +3440,38 @@ def _run_H(m, X):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
-        inv_rus_v_1_t = 1.0/rus_v_1_t
-        rus_w_1_t_7 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y)
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
         )
-        rus_w_1_t_8 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z)
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
         )
-        rus_w_1_t_9 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x)
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
         # (rus-H_a_1) moment of the column's unit force about the platform origin
         rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9
         rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7
         rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (rus-w_1) reciprocal vector 1
         out_H[_H_rus[0][leg]] = -rus_w_1_t_7
@@ -3525,7 +3484,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1587 mul, 1101 add, 24 div, 12 sqrt, 0 trig
+# required: 1569 mul, 1083 add, 24 div, 12 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3599,9 +3558,22 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -3614,21 +3586,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
-        f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
-        f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
-        f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*m_star - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -3683,7 +3643,7 @@ def _run_required(m, X, V, A):
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
             rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,
         ) = k
-        # (rus-S) from the base point to the connection point
+        # (rus-J_3) inertia tensor of link 3 about the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -3693,48 +3653,41 @@ def _run_required(m, X, V, A):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
+        )
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-S_dot) velocity of the connection point
         rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
         rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
@@ -3743,22 +3696,18 @@ def _run_required(m, X, V, A):
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
-        )
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
         rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
         rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
         rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
         rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
         rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_c_3*(rus_c_3*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
@@ -3771,13 +3720,16 @@ def _run_required(m, X, V, A):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -3799,6 +3751,11 @@ def _run_required(m, X, V, A):
         inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
         )
+        # (rus-qd_2) rate of joint 2
+        rus_qd_2 = (
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
+            axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z)
+        )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
@@ -3807,26 +3764,19 @@ def _run_required(m, X, V, A):
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
         rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
-        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
-            axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z) - rus_qd_1_t
-        )
+        rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
         rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y
-        # (rus-a_p) acceleration of the connection point without its centripetal part
-        rus_a_p_x = t_ddot_x + alpha_y*rus_q_z - alpha_z*rus_q_y
-        rus_a_p_y = t_ddot_y + alpha_z*rus_q_x - alpha_x*rus_q_z
-        rus_a_p_z = t_ddot_z + alpha_x*rus_q_y - alpha_y*rus_q_x
         # (rus-S_ddot) acceleration of the connection point
-        rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2
-        rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3
-        rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t
+        rus_S_ddot_x = t_ddot_x + B_p_xy*rus_q_y + B_p_xz*rus_q_z - W_p_t_4*rus_q_x
+        rus_S_ddot_y = t_ddot_y + B_p_yx*rus_q_x + B_p_yz*rus_q_z - W_p_t_5*rus_q_y
+        rus_S_ddot_z = t_ddot_z + B_p_zx*rus_q_x + B_p_zy*rus_q_y - W_p_t_6*rus_q_z
         rus_S_ddot_in_axes3_x = (
         axis_x_rus_axes3_x*rus_S_ddot_x + axis_x_rus_axes3_y*rus_S_ddot_y +
             axis_x_rus_axes3_z*rus_S_ddot_z
@@ -3843,7 +3793,7 @@ def _run_required(m, X, V, A):
         rus_bias_t = rus_c_2*rus_joint2_offset_x
         rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         rus_bias_t_2 = (
-        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y -
+        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
             rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
         )
         rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
@@ -3865,14 +3815,14 @@ def _run_required(m, X, V, A):
         rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
         rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
+        # (rus-qdd_2) acceleration of joint 2
+        rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z)
         # (rus-qdd_3) acceleration of joint 3
         rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 - rus_rel_in_axes3_y)
         # (rus-alpha_2) angular acceleration of link 2
-        rus_alpha_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t
-        )
+        rus_alpha_2_in_axes2_z = rus_qdd_2 - rus_qdd_1_t
         rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_e_1_in_axes3_x
-        rus_alpha_2_in_axes3_y = -rus_alpha_2_in_axes2_z*rus_c_3
+        rus_alpha_2_in_axes3_y = -rus_J_3_t_17*rus_alpha_2_in_axes2_z
         # (rus-alpha_3) angular acceleration of link 3
         rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x
         rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz
@@ -3882,68 +3832,72 @@ def _run_required(m, X, V, A):
         rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y
         rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x
         # (rus-acc_3) acceleration of the reference point of link 3, less gravity
-        rus_acc_3_in_axes3_x = (
-        rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
-            axis_x_rus_axes3_z*gravity_z
+        rus_g_in_axes3_x = (
+        axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y + axis_x_rus_axes3_z*gravity_z
         )
-        rus_acc_3_in_axes3_y = (
-        rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x - axis_y_rus_axes3_y*gravity_y -
-            axis_y_rus_axes3_z*gravity_z
+        rus_g_in_axes3_y = (
+        axis_y_rus_axes3_x*gravity_x + axis_y_rus_axes3_y*gravity_y + axis_y_rus_axes3_z*gravity_z
         )
-        rus_acc_3_in_axes3_z = (
-        rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x - axis_z_rus_axes3_y*gravity_y -
-            axis_z_rus_axes3_z*gravity_z
+        rus_g_in_axes3_z = (
+        axis_z_rus_axes3_x*gravity_x + axis_z_rus_axes3_y*gravity_y + axis_z_rus_axes3_z*gravity_z
         )
+        rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - rus_g_in_axes3_x
+        rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - rus_g_in_axes3_y
+        rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - rus_g_in_axes3_z
         # (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points
         rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
         rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
         rus_mu_3_t_3 = rus_qd_3*rus_qd_3
+        rus_mu_3_t_4 = rus_J_3_in_spec3_yz*(rus_mu_3_t_2 - rus_mu_3_t_3)
+        rus_mu_3_t_5 = rus_J_3_in_spec3_xy*(rus_mu_3_t - rus_mu_3_t_3)
+        rus_mu_3_t_6 = rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2)
         rus_mu_3_in_axes3_x = (
         rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy + rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz +
             rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
-            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_mu_3_t_4 -
+            rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z
         )
         rus_mu_3_in_axes3_y = (
         rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
-            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
-            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x
+            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_mu_3_t_5 -
+            rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz
+            - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x
         )
         rus_mu_3_in_axes3_z = (
         rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx + rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x +
             rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x -
-            rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_t -
-            rus_mu_3_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
+            rus_mu_3_t_6 - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy -
+            rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
         )
-        rus_mu_3_in_axes1_z = rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_c_3*rus_mu_3_in_axes3_y
+        rus_mu_3_in_axes1_z = (
+        rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_J_3_t_17*rus_mu_3_in_axes3_y
+        )
         # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rus_mu_1_in_axes1_z = (
-        rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
-            rus_J_1_in_spec1_zz*rus_qdd_1_t - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 -
-            rus_mu_1_t*rus_s_1)
-        )
+        rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
+        rus_g_in_axes1_y = rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1
+        rus_mu_1_t_3 = rus_g_in_axes1_y*rus_h_1_in_spec1_x - rus_g_in_axes1_x*rus_h_1_in_spec1_y
+        rus_mu_1_in_axes1_z = -rus_mu_1_t_3 - rus_J_1_in_spec1_zz*rus_qdd_1_t
         # (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y
         # (rus-c) leg force on the platform without actuation and without the mass at the connection point
+        rus_c_t = rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3)
+        rus_c_t_2 = rus_h_3_in_spec3_z*(rus_mu_3_t + rus_mu_3_t_3)
+        rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         rus_c_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_N_1_in_axes1_z + rus_G_in_axes3_y*rus_v_1_t_3 -
-            rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3) -
+        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_in_axes1_z + rus_G_in_axes3_y*rus_v_1_t_3 -
+            rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y
         )
         rus_c_in_axes3_y = (
-        rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y -
-            rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
-            rus_mu_3_t_3)
+        rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y - rus_c_t_2 -
+            rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x
         )
         rus_c_in_axes3_z = (
-        rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) -
-            rus_G_in_axes3_z - rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x
+        rus_c_t_3 + rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z - rus_G_in_axes3_z -
+            rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x
         )
         rus_c_x = (
         axis_x_rus_axes3_x*rus_c_in_axes3_x + axis_y_rus_axes3_x*rus_c_in_axes3_y +
@@ -3966,8 +3920,8 @@ def _run_required(m, X, V, A):
         rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7
         rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
             _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (R_t) force that actuators and external wrench must give
@@ -4056,66 +4010,60 @@ def _run_inverse_kinematics(m, X):
             rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size_t_3,
         ) = k
-        # (rus-S) from the base point to the connection point
-        rus_S_x = (
-        t_x + R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z -
-            rus_base_point_x
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_q_x = (
+        R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        rus_S_y = (
-        t_y + R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z -
-            rus_base_point_y
+        rus_q_y = (
+        R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        rus_S_z = (
-        t_z + R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z -
-            rus_base_point_z
+        rus_q_z = (
+        R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
+        )
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
         # (rus-q_1) displacement of joint 1
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_q_1 = (
-        atan2(inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1),
-            inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1))
-        )
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        rus_q_1 = atan2(rus_s_1, rus_c_1)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-q_2) displacement of joint 2
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_q_2 = (
-        atan2(-inv_rus_rho2_2*rus_root_2*rus_xi_1_t, inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x)
-        )
+        rus_q_2 = atan2(-rus_s_2_t, rus_c_2)
         # (rus-q_3) displacement of joint 3
-        rus_q_3 = (
-        atan2(-inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz),
-            inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2)
-        )
+        rus_q_3 = atan2(-rus_e_1_in_axes3_x, rus_J_3_t_17)
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
         )
         # (rus-q_1) displacement of joint 1
         out_q[_q_rus[0][leg]] = rus_q_1
@@ -4126,7 +4074,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 684 mul, 384 add, 24 div, 12 sqrt, 0 trig
+# joint_rates: 696 mul, 384 add, 24 div, 12 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -4190,7 +4138,7 @@ def _run_joint_rates(m, X, V):
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
             rus_w_3_in_axes3_y,
         ) = k
-        # (rus-S) from the base point to the connection point
+        # (rus-J_3) inertia tensor of link 3 about the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -4200,115 +4148,119 @@ def _run_joint_rates(m, X, V):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
-        # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-S_dot) velocity of the connection point
-        rus_S_dot_x = t_dot_x + omega_y*rus_q_z - omega_z*rus_q_y
-        rus_S_dot_y = t_dot_y + omega_z*rus_q_x - omega_x*rus_q_z
-        rus_S_dot_z = t_dot_z + omega_x*rus_q_y - omega_y*rus_q_x
-        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
         rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        # (rus-S_dot) velocity of the connection point
+        rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
+        rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
+        rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x
+        rus_S_dot_x = rus_S_dot_t + t_dot_x
+        rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
+        rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
         rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
         rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
         rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
         rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*rus_r_1_in_axes3_z
-        # (rus-qd_1) rate of joint 1
-        rus_qd_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
-        rus_qd_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
-        axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t + rus_base_frame_xy*rus_qd_1_t_2
-        axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t + rus_base_frame_yy*rus_qd_1_t_2
-        axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t + rus_base_frame_zy*rus_qd_1_t_2
-        rus_qd_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
-        rus_qd_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
-        rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1
-        rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4
+        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
+        rus_v_1_in_axes3_z = (
+        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        )
+        # (rus-w_1) reciprocal vector 1
+        rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
+        rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
+        rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
+        rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 -
-            rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 -
-            rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 -
-            rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
-        rus_qd_1_t_7 = (
-        (rus_S_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y) +
-            rus_S_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z) +
-            rus_S_dot_z*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x))/rus_v_1_t
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
+        )
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
+        )
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
+        )
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        # (rus-w_2) reciprocal vector 2
+        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        # (rus-qd_1) rate of joint 1
+        rus_qd_1_t = (
+        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+            axis_x_rus_axes3_z*rus_S_dot_z)
         )
         # (rus-qd_2) rate of joint 2
-        rus_qd_2_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_qd_2_t_2 = (
-        axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
-            axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t_7*(rus_c_3*(rus_c_3*rus_qd_2_t +
-            rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_qd_2_t - rus_c_3*rus_r_1_in_axes1_z))
+        rus_qd_2 = (
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
+            axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z)
         )
-        rus_qd_2 = rus_qd_2_t_2/rus_r_1_t
         # (rus-qd_3) rate of joint 3
-        rus_qd_3 = (
-        rus_w_3_in_axes3_y*(axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z - rus_e_1_in_axes3_x*rus_qd_1_t_7*rus_r_1_in_axes3_z)
+        rus_qd_3_t = (
+        axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
+            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_3
         )
+        rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (rus-qd_1) rate of joint 1
-        out_qd[_qd_rus[0][leg]] = -rus_qd_1_t_7
+        out_qd[_qd_rus[0][leg]] = -rus_qd_1_t
         # (rus-qd_2) rate of joint 2
         out_qd[_qd_rus[1][leg]] = rus_qd_2
         # (rus-qd_3) rate of joint 3
@@ -4316,7 +4268,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 990 mul, 570 add, 24 div, 12 sqrt, 0 trig
+# joint_accelerations: 978 mul, 561 add, 24 div, 12 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -4383,6 +4335,23 @@ def _run_joint_accelerations(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
@@ -4393,7 +4362,7 @@ def _run_joint_accelerations(m, X, V, A):
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
             rus_w_3_in_axes3_y,
         ) = k
-        # (rus-S) from the base point to the connection point
+        # (rus-J_3) inertia tensor of link 3 about the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -4403,48 +4372,41 @@ def _run_joint_accelerations(m, X, V, A):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
+        )
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-S_dot) velocity of the connection point
         rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
         rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
@@ -4453,48 +4415,40 @@ def _run_joint_accelerations(m, X, V, A):
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
-        )
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
         rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
         rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
         rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
         rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
         rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_c_3*(rus_c_3*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
-        # (rus-qd_1) rate of joint 1
-        rus_qd_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
-        rus_qd_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
-        axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t + rus_base_frame_xy*rus_qd_1_t_2
-        axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t + rus_base_frame_yy*rus_qd_1_t_2
-        axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t + rus_base_frame_zy*rus_qd_1_t_2
-        rus_qd_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
-        rus_qd_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
-        rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1
-        rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4
+        rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
+        rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
+        rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
+        rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 -
-            rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 -
-            rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 -
-            rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -4505,39 +4459,55 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        rus_qd_1_t_7 = (
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        # (rus-w_2) reciprocal vector 2
+        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        # (rus-qd_1) rate of joint 1
+        rus_qd_1_t = (
         inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
+        )
+        # (rus-qd_2) rate of joint 2
+        rus_qd_2 = (
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
+            axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z)
         )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t_7*rus_v_1_t_3
+            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_3
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t_7
-        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t_7
+        rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
-            axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t_7*rus_v_1_in_axes3_z) - rus_qd_1_t_7
-        )
+        rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
-        # (rus-a_p) acceleration of the connection point without its centripetal part
-        rus_a_p_x = t_ddot_x + alpha_y*rus_q_z - alpha_z*rus_q_y
-        rus_a_p_y = t_ddot_y + alpha_z*rus_q_x - alpha_x*rus_q_z
-        rus_a_p_z = t_ddot_z + alpha_x*rus_q_y - alpha_y*rus_q_x
+        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
+        # (rus-W_3) centripetal tensor of link 3
+        rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
         # (rus-S_ddot) acceleration of the connection point
-        rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2
-        rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3
-        rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t
+        rus_S_ddot_x = t_ddot_x + B_p_xy*rus_q_y + B_p_xz*rus_q_z - W_p_t_4*rus_q_x
+        rus_S_ddot_y = t_ddot_y + B_p_yx*rus_q_x + B_p_yz*rus_q_z - W_p_t_5*rus_q_y
+        rus_S_ddot_z = t_ddot_z + B_p_zx*rus_q_x + B_p_zy*rus_q_y - W_p_t_6*rus_q_z
+        rus_S_ddot_in_axes3_x = (
+        axis_x_rus_axes3_x*rus_S_ddot_x + axis_x_rus_axes3_y*rus_S_ddot_y +
+            axis_x_rus_axes3_z*rus_S_ddot_z
+        )
+        rus_S_ddot_in_axes3_y = (
+        axis_y_rus_axes3_x*rus_S_ddot_x + axis_y_rus_axes3_y*rus_S_ddot_y +
+            axis_y_rus_axes3_z*rus_S_ddot_z
+        )
+        rus_S_ddot_in_axes3_z = (
+        axis_z_rus_axes3_x*rus_S_ddot_x + axis_z_rus_axes3_y*rus_S_ddot_y +
+            axis_z_rus_axes3_z*rus_S_ddot_z
+        )
         # (rus-bias) acceleration of the connection point at zero joint accelerations
         rus_bias_t = rus_c_2*rus_joint2_offset_x
         rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         rus_bias_t_2 = (
-        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y -
+        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
             rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
         )
         rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
@@ -4549,24 +4519,14 @@ def _run_joint_accelerations(m, X, V, A):
         rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
-        rus_omega_2_in_axes3_x*rus_qd_3_t +
-            rus_omega_2_in_axes3_x*rus_platform_joint_offset_x*rus_qd_3 -
+        rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
         )
         # (rus-rel) acceleration of the connection point left to the joint accelerations
-        rus_rel_in_axes3_x = (
-        axis_x_rus_axes3_x*rus_S_ddot_x + axis_x_rus_axes3_y*rus_S_ddot_y +
-            axis_x_rus_axes3_z*rus_S_ddot_z - rus_bias_in_axes3_x
-        )
-        rus_rel_in_axes3_y = (
-        axis_y_rus_axes3_x*rus_S_ddot_x + axis_y_rus_axes3_y*rus_S_ddot_y +
-            axis_y_rus_axes3_z*rus_S_ddot_z - rus_bias_in_axes3_y
-        )
-        rus_rel_in_axes3_z = (
-        axis_z_rus_axes3_x*rus_S_ddot_x + axis_z_rus_axes3_y*rus_S_ddot_y +
-            axis_z_rus_axes3_z*rus_S_ddot_z - rus_bias_in_axes3_z
-        )
+        rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x
+        rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y
+        rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
         rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
         # (rus-qdd_2) acceleration of joint 2
@@ -4574,8 +4534,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (rus-qdd_3) acceleration of joint 3
         rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 - rus_rel_in_axes3_y)
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
             _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (rus-qdd_1) acceleration of joint 1
@@ -4587,7 +4547,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 1440 mul, 966 add, 24 div, 12 sqrt, 0 trig
+# legs: 1428 mul, 957 add, 24 div, 12 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -4656,6 +4616,23 @@ def _run_legs(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
@@ -4670,7 +4647,7 @@ def _run_legs(m, X, V, A):
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
             rus_w_3_in_axes3_y,
         ) = k
-        # (rus-S) from the base point to the connection point
+        # (rus-J_3) inertia tensor of link 3 about the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -4680,48 +4657,41 @@ def _run_legs(m, X, V, A):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
+        )
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-S_dot) velocity of the connection point
         rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
         rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
@@ -4730,22 +4700,18 @@ def _run_legs(m, X, V, A):
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
-        )
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
         rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
         rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
         rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
         rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
         rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_c_3*(rus_c_3*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
@@ -4758,13 +4724,16 @@ def _run_legs(m, X, V, A):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -4786,6 +4755,11 @@ def _run_legs(m, X, V, A):
         inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
         )
+        # (rus-qd_2) rate of joint 2
+        rus_qd_2 = (
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
+            axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z)
+        )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
@@ -4794,26 +4768,19 @@ def _run_legs(m, X, V, A):
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
         rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
-        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
-            axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z) - rus_qd_1_t
-        )
+        rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
         rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y
-        # (rus-a_p) acceleration of the connection point without its centripetal part
-        rus_a_p_x = t_ddot_x + alpha_y*rus_q_z - alpha_z*rus_q_y
-        rus_a_p_y = t_ddot_y + alpha_z*rus_q_x - alpha_x*rus_q_z
-        rus_a_p_z = t_ddot_z + alpha_x*rus_q_y - alpha_y*rus_q_x
         # (rus-S_ddot) acceleration of the connection point
-        rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2
-        rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3
-        rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t
+        rus_S_ddot_x = t_ddot_x + B_p_xy*rus_q_y + B_p_xz*rus_q_z - W_p_t_4*rus_q_x
+        rus_S_ddot_y = t_ddot_y + B_p_yx*rus_q_x + B_p_yz*rus_q_z - W_p_t_5*rus_q_y
+        rus_S_ddot_z = t_ddot_z + B_p_zx*rus_q_x + B_p_zy*rus_q_y - W_p_t_6*rus_q_z
         rus_S_ddot_in_axes3_x = (
         axis_x_rus_axes3_x*rus_S_ddot_x + axis_x_rus_axes3_y*rus_S_ddot_y +
             axis_x_rus_axes3_z*rus_S_ddot_z
@@ -4830,7 +4797,7 @@ def _run_legs(m, X, V, A):
         rus_bias_t = rus_c_2*rus_joint2_offset_x
         rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         rus_bias_t_2 = (
-        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y -
+        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
             rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
         )
         rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
@@ -4852,14 +4819,14 @@ def _run_legs(m, X, V, A):
         rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
         rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
+        # (rus-qdd_2) acceleration of joint 2
+        rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z)
         # (rus-qdd_3) acceleration of joint 3
         rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 - rus_rel_in_axes3_y)
         # (rus-alpha_2) angular acceleration of link 2
-        rus_alpha_2_in_axes2_z = (
-        rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t
-        )
+        rus_alpha_2_in_axes2_z = rus_qdd_2 - rus_qdd_1_t
         rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_e_1_in_axes3_x
-        rus_alpha_2_in_axes3_y = -rus_alpha_2_in_axes2_z*rus_c_3
+        rus_alpha_2_in_axes3_y = -rus_J_3_t_17*rus_alpha_2_in_axes2_z
         # (rus-alpha_3) angular acceleration of link 3
         rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x
         rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz
@@ -4869,68 +4836,72 @@ def _run_legs(m, X, V, A):
         rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y
         rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x
         # (rus-acc_3) acceleration of the reference point of link 3, less gravity
-        rus_acc_3_in_axes3_x = (
-        rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
-            axis_x_rus_axes3_z*gravity_z
+        rus_g_in_axes3_x = (
+        axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y + axis_x_rus_axes3_z*gravity_z
         )
-        rus_acc_3_in_axes3_y = (
-        rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x - axis_y_rus_axes3_y*gravity_y -
-            axis_y_rus_axes3_z*gravity_z
+        rus_g_in_axes3_y = (
+        axis_y_rus_axes3_x*gravity_x + axis_y_rus_axes3_y*gravity_y + axis_y_rus_axes3_z*gravity_z
         )
-        rus_acc_3_in_axes3_z = (
-        rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x - axis_z_rus_axes3_y*gravity_y -
-            axis_z_rus_axes3_z*gravity_z
+        rus_g_in_axes3_z = (
+        axis_z_rus_axes3_x*gravity_x + axis_z_rus_axes3_y*gravity_y + axis_z_rus_axes3_z*gravity_z
         )
+        rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - rus_g_in_axes3_x
+        rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - rus_g_in_axes3_y
+        rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - rus_g_in_axes3_z
         # (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points
         rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
         rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
         rus_mu_3_t_3 = rus_qd_3*rus_qd_3
+        rus_mu_3_t_4 = rus_J_3_in_spec3_yz*(rus_mu_3_t_2 - rus_mu_3_t_3)
+        rus_mu_3_t_5 = rus_J_3_in_spec3_xy*(rus_mu_3_t - rus_mu_3_t_3)
+        rus_mu_3_t_6 = rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2)
         rus_mu_3_in_axes3_x = (
         rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy + rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz +
             rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
-            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_mu_3_t_4 -
+            rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z
         )
         rus_mu_3_in_axes3_y = (
         rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
-            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
-            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x
+            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_mu_3_t_5 -
+            rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz
+            - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x
         )
         rus_mu_3_in_axes3_z = (
         rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx + rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x +
             rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x -
-            rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_t -
-            rus_mu_3_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
+            rus_mu_3_t_6 - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy -
+            rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
         )
-        rus_mu_3_in_axes1_z = rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_c_3*rus_mu_3_in_axes3_y
+        rus_mu_3_in_axes1_z = (
+        rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_J_3_t_17*rus_mu_3_in_axes3_y
+        )
         # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rus_mu_1_in_axes1_z = (
-        rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
-            rus_J_1_in_spec1_zz*rus_qdd_1_t - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 -
-            rus_mu_1_t*rus_s_1)
-        )
+        rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
+        rus_g_in_axes1_y = rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1
+        rus_mu_1_t_3 = rus_g_in_axes1_y*rus_h_1_in_spec1_x - rus_g_in_axes1_x*rus_h_1_in_spec1_y
+        rus_mu_1_in_axes1_z = -rus_mu_1_t_3 - rus_J_1_in_spec1_zz*rus_qdd_1_t
         # (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y
         # (rus-c) leg force on the platform without actuation and without the mass at the connection point
+        rus_c_t = rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3)
+        rus_c_t_2 = rus_h_3_in_spec3_z*(rus_mu_3_t + rus_mu_3_t_3)
+        rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         rus_c_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_N_1_in_axes1_z + rus_G_in_axes3_y*rus_v_1_t_3 -
-            rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3) -
+        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_in_axes1_z + rus_G_in_axes3_y*rus_v_1_t_3 -
+            rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y
         )
         rus_c_in_axes3_y = (
-        rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y -
-            rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
-            rus_mu_3_t_3)
+        rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y - rus_c_t_2 -
+            rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x
         )
         rus_c_in_axes3_z = (
-        rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) -
-            rus_G_in_axes3_z - rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x
+        rus_c_t_3 + rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z - rus_G_in_axes3_z -
+            rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x
         )
         # (rus-c_true) leg force on the platform without actuation, the last link's mass included
         rus_c_true_in_axes3_x = rus_c_in_axes3_x - rus_acc_3_in_axes3_x*rus_link3_mass
@@ -4949,8 +4920,8 @@ def _run_legs(m, X, V, A):
             axis_z_rus_axes3_z*rus_c_true_in_axes3_z
         )
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
             _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (rus-c_true) leg force on the platform without actuation, the last link's mass included
@@ -5009,12 +4980,14 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
+    gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
+        m_star*t_z)
     )
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
@@ -5029,80 +5002,74 @@ def _run_potential(m, X):
             rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, rus_potential_t,
             rus_potential_t_2, rus_potential_t_3, rus_rho2_1_t, rus_size_t_3,
         ) = k
-        # (rus-S) from the base point to the connection point
-        rus_S_x = (
-        t_x + R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z -
-            rus_base_point_x
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_q_x = (
+        R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        rus_S_y = (
-        t_y + R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z -
-            rus_base_point_y
+        rus_q_y = (
+        R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        rus_S_z = (
-        t_z + R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z -
-            rus_base_point_z
+        rus_q_z = (
+        R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
-        # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (potential) potential energy
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
         rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
-        rus_potential_t_4 = rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_c_3*rus_h_3_in_spec3_x
-        rus_potential_t_5 = (
-        rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 + rus_c_3*rus_h_3_in_spec3_z +
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_x) + (rus_c_1*rus_mu_1_t +
-            rus_mu_1_t_2*rus_s_1)*(rus_h_1_in_spec1_x + rus_h_3_in_spec3_y*rus_s_2_t +
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rus_d_Gamma_2_t_2 = (
+        rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_J_3_t_17*rus_h_3_in_spec3_x
+        )
+        # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
+        rus_g_in_axes1_y = rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1
+        # (potential) potential energy
+        rus_potential_t_4 = (
+        rus_g_in_axes1_x*(rus_h_1_in_spec1_x + rus_h_3_in_spec3_y*rus_s_2_t +
             rus_link1_mass*(rus_c_1*rus_potential_t + rus_potential_t_2*rus_s_1) -
-            rus_c_2*rus_potential_t_4) + (rus_c_1*rus_mu_1_t_2 -
-            rus_mu_1_t*rus_s_1)*(rus_h_1_in_spec1_y + rus_c_2*rus_h_3_in_spec3_y +
-            rus_link1_mass*(rus_c_1*rus_potential_t_2 - rus_potential_t*rus_s_1) +
-            rus_potential_t_4*rus_s_2_t)
+            rus_c_2*rus_d_Gamma_2_t_2) + rus_g_in_axes1_y*(rus_h_1_in_spec1_y +
+            rus_c_2*rus_h_3_in_spec3_y + rus_d_Gamma_2_t_2*rus_s_2_t +
+            rus_link1_mass*(rus_c_1*rus_potential_t_2 - rus_potential_t*rus_s_1)) +
+            rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 +
+            rus_J_3_t_17*rus_h_3_in_spec3_z + rus_e_1_in_axes3_x*rus_h_3_in_spec3_x)
         )
         ok = (
-        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
         )
         # (potential) potential energy
-        potential_t_2 += rus_potential_t_5
+        potential_t_2 += rus_potential_t_4
     # (potential) potential energy
     potential = -potential_t - potential_t_2
     # (potential) potential energy
@@ -5171,7 +5138,7 @@ def _run_condition(m, X):
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
             rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
         ) = k
-        # (rus-S) from the base point to the connection point
+        # (rus-J_3) inertia tensor of link 3 about the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -5181,58 +5148,49 @@ def _run_condition(m, X):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx)
+        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = (
-        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy)
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
-        # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*(rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t*rus_s_2_t)
-        # (rus-w_1) reciprocal vector 1
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
         rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
+        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        # (rus-s_1) sine of the angle of joint 1 from its reference direction
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
+        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
         axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
@@ -5243,32 +5201,35 @@ def _run_condition(m, X):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
-        inv_rus_v_1_t = 1.0/rus_v_1_t
-        rus_w_1_t_7 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y)
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
         )
-        rus_w_1_t_8 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z)
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
         )
-        rus_w_1_t_9 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x)
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rus_pivot_size = abs(rus_rho2_1)
-        rus_pivot_size_2 = abs(rus_rho2_2)
+        rus_pivot_size = abs(rus_J_3_t_10)
+        rus_pivot_size_2 = abs(rus_J_3_t_15)
         rus_pivot_size_3 = abs(rus_r_1_t)
-        rus_pivot_size_4 = abs(rus_v_1_t)
+        rus_pivot_size_4 = abs(rus_v_1_t_2)
         rus_least_pivots = (
         least(least(least(sqrt(inv_rus_rho2_1_t*rus_pivot_size), inv_rus_size*rus_pivot_size_3),
             inv_rus_size*rus_pivot_size_4), sqrt(inv_rus_size_t_3*rus_pivot_size_2))
@@ -5285,11 +5246,11 @@ def _run_condition(m, X):
         rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 + rus_spread_t_3*rus_spread_t_3
         )
         clear = (
-        clear & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (abs(rus_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) > _TOLERANCE * rus_size) &
-            (abs(rus_v_1_t) > _TOLERANCE * rus_size)
+        clear & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (abs(rus_J_3_t_15)
+            > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) > _TOLERANCE * rus_size) &
+            (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
-        reached = reached & (rus_disc_1 >= 0.0)
+        reached = reached & (rus_J_3_t_11 >= 0.0)
         # (spread) rms distance of the platform points from their centroid
         spread_rus += rus_spread_t_4
         # (rus-w_1) reciprocal vector 1
@@ -5302,7 +5263,7 @@ def _run_condition(m, X):
         out_H[_H_rus[5][leg]] = rus_H_a_1_z
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rus[0][leg]] = rus_least_pivots
-        out_reach[_reach_rus[0][leg]] = rus_disc_1
+        out_reach[_reach_rus[0][leg]] = rus_J_3_t_11
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_rus)*spread_t
     # (spread) rms distance of the platform points from their centroid
@@ -5555,12 +5516,12 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[[0, 3, 6, 9, 12, 15]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
-    gap = _wrapped(subtract_1, [0, 1, 2, 3, 4, 5])
-    return (gap,)
+    residual = _wrapped(subtract_1, [0, 1, 2, 3, 4, 5])
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -5569,7 +5530,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

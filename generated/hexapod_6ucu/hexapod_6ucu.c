@@ -149,9 +149,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -213,6 +213,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -261,7 +285,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -271,7 +295,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -284,7 +308,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -301,16 +325,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -318,7 +342,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1414,10 +1447,28 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
-        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
-        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+    real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
+        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
+
+INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
+{
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real W_p_t = omega_x*omega_x;
+    const real omega_y = V[4*w + k];
+    const real W_p_t_2 = omega_y*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_t_3 = omega_z*omega_z;
+    v->W_p_t_4 = W_p_t_2 + W_p_t_3;
+    v->W_p_xy = omega_x*omega_y;
+    v->W_p_xz = omega_x*omega_z;
+    v->W_p_t_5 = W_p_t + W_p_t_3;
+    v->W_p_yz = omega_y*omega_z;
+    v->W_p_t_6 = W_p_t + W_p_t_2;
+}
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
@@ -1427,10 +1478,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_5 = X[5*w + k];
     const real X_6 = X[6*w + k];
     const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-    const real quaternion_scale = 2/quaternion_norm2;
-    const real quaternion_sx = X_3*quaternion_scale;
-    const real quaternion_sy = X_4*quaternion_scale;
-    const real quaternion_sz = X_5*quaternion_scale;
+    v->quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*v->quaternion_scale;
+    const real quaternion_sy = X_4*v->quaternion_scale;
+    const real quaternion_sz = X_5*v->quaternion_scale;
     const real quaternion_wx = X_6*quaternion_sx;
     const real quaternion_wy = X_6*quaternion_sy;
     const real quaternion_wz = X_6*quaternion_sz;
@@ -1440,53 +1491,22 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real quaternion_yy = X_4*quaternion_sy;
     const real quaternion_yz = X_4*quaternion_sz;
     const real quaternion_zz = X_5*quaternion_sz;
-    const real R_xx = 1 - quaternion_yy - quaternion_zz;
-    const real R_xy = quaternion_xy - quaternion_wz;
-    const real R_xz = quaternion_wy + quaternion_xz;
-    const real R_yx = quaternion_wz + quaternion_xy;
-    const real R_yy = 1 - quaternion_xx - quaternion_zz;
-    const real R_yz = quaternion_yz - quaternion_wx;
-    const real R_zx = quaternion_xz - quaternion_wy;
-    const real R_zy = quaternion_wx + quaternion_yz;
-    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    v->R_xx = 1 - quaternion_yy - quaternion_zz;
+    v->R_xy = quaternion_xy - quaternion_wz;
+    v->R_xz = quaternion_wy + quaternion_xz;
+    v->R_yx = quaternion_wz + quaternion_xy;
+    v->R_yy = 1 - quaternion_xx - quaternion_zz;
+    v->R_yz = quaternion_yz - quaternion_wx;
+    v->R_zx = quaternion_xz - quaternion_wy;
+    v->R_zy = quaternion_wx + quaternion_yz;
+    v->R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
-        R_xx*m->h_star_in_platform_x;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
-        R_yy*m->h_star_in_platform_y;
-    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
-        R_zz*m->h_star_in_platform_z;
-    v->quaternion_scale = quaternion_scale;
-    v->R_xx = R_xx;
-    v->R_xy = R_xy;
-    v->R_xz = R_xz;
-    v->R_yx = R_yx;
-    v->R_yy = R_yy;
-    v->R_yz = R_yz;
-    v->R_zx = R_zx;
-    v->R_zy = R_zy;
-    v->R_zz = R_zz;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
-    v->h_star_z = h_star_z;
-}
-
-INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
-{
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
-    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
-    v->omega_in_platform_x = omega_in_platform_x;
-    v->omega_in_platform_y = omega_in_platform_y;
-    v->omega_in_platform_z = omega_in_platform_z;
-}
-
-INLINE void stage_M_dynamics(const prepared *m, values *v)
-{
+    v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
+        v->R_xx*m->h_star_in_platform_x;
+    v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
+        v->R_yy*m->h_star_in_platform_y;
+    v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
+        v->R_zz*m->h_star_in_platform_z;
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
@@ -1498,23 +1518,31 @@ INLINE void stage_M_dynamics(const prepared *m, values *v)
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
-    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+    v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
-    v->J_star_xx = J_star_xx;
-    v->J_star_xy = J_star_xy;
-    v->J_star_xz = J_star_xz;
-    v->J_star_yy = J_star_yy;
-    v->J_star_yz = J_star_yz;
-    v->J_star_zz = J_star_zz;
+    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
+}
+
+INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
+{
+    /* (B_p) acceleration tensor of the platform */
+    const real alpha_z = A[5*w + k];
+    v->B_p_xy = v->W_p_xy - alpha_z;
+    const real alpha_y = A[4*w + k];
+    v->B_p_xz = alpha_y + v->W_p_xz;
+    v->B_p_yx = alpha_z + v->W_p_xy;
+    const real alpha_x = A[3*w + k];
+    v->B_p_yz = v->W_p_yz - alpha_x;
+    v->B_p_zx = v->W_p_xz - alpha_y;
+    v->B_p_zy = alpha_x + v->W_p_yz;
 }
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
@@ -1526,73 +1554,46 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
+    v->Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    v->Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    v->Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
-        v->R_xx*m->gravity_x;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
-        v->R_yy*m->gravity_y;
-    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
-        v->R_zz*m->gravity_z;
-    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
-        Z_q_t_2*v->omega_in_platform_z;
-    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
-        Z_q_t_3*v->omega_in_platform_x;
-    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
-        Z_q_t*v->omega_in_platform_y;
-    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
-        v->R_xz*Z_q_in_platform_z;
-    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
-        v->R_yz*Z_q_in_platform_z;
-    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
-        v->R_zz*Z_q_in_platform_z;
-    v->Z_p_x = Z_p_x;
-    v->Z_p_y = Z_p_y;
-    v->Z_p_z = Z_p_z;
-    v->Z_q_x = Z_q_x;
-    v->Z_q_y = Z_q_y;
-    v->Z_q_z = Z_q_z;
+    const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
+    const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
+    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
+        Z_q_t_2*omega_z;
+    v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
+        Z_q_t_3*omega_x;
+    v->Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x + Z_q_t_2*omega_x -
+        Z_q_t*omega_y;
 }
 
 typedef struct {
-    real ucu_q_x, ucu_q_y, ucu_q_z, ucu_S_in_turn1_z, ucu_root_1_t, ucu_c_1, ucu_s_1, ucu_root_2_t,
-        ucu_root_2, inv_ucu_root_2, ucu_c_2, ucu_e_1_in_axes4_z, ucu_root_4_t, ucu_root_4_t_2,
-        ucu_root_4_t_3, ucu_end_p1_in_turn4_x, ucu_root_4_t_6, ucu_c_4, ucu_e_2_in_axes4_y, ucu_v_1_t,
-        ucu_e_1_in_axes4_y, ucu_v_1_in_axes4_x, ucu_v_1_in_axes4_y, ucu_v_1_in_axes2_z, ucu_v_1_t_2,
-        ucu_n_m1_in_axes4_x, ucu_n_m1_in_axes2_z, ucu_end_p1_in_axes4_x, ucu_w_3_x, ucu_w_3_y,
-        ucu_w_3_z, inv_ucu_end_p1_in_axes4_x, inv_ucu_v_1_in_axes2_z, ucu_end_p1_in_axes4_y,
-        ucu_g_in_axes2_z, ucu_H_a_3_x, ucu_H_a_3_y, ucu_H_a_3_z, axis_y_ucu_axes4_x,
-        axis_y_ucu_axes4_y, axis_y_ucu_axes4_z, axis_x_ucu_axes4_x, axis_x_ucu_axes4_y,
-        axis_x_ucu_axes4_z, ucu_qd_4_t_4, ucu_a_p_x, ucu_a_p_y, ucu_a_p_z, ucu_etad_1_t, ucu_S_dot_t,
-        ucu_S_dot_t_2, ucu_S_dot_t_3, ucu_S_dot_t_4, ucu_S_dot_t_5, ucu_S_dot_t_6, ucu_qd_1, ucu_qd_2,
-        ucu_omega_1_in_axes2_x, ucu_omega_1_in_axes2_y, ucu_omega_2_in_axes4_x,
-        ucu_omega_2_in_axes4_y, ucu_W_2_in_axes2_yz, ucu_W_2_in_axes2_xz, ucu_W_2_in_axes2_xy,
-        ucu_W_2_in_axes4_xy, ucu_zeta_2_t, ucu_bias_in_axes4_x, ucu_bias_in_axes4_y,
-        ucu_omega_in_axes4_z, ucu_qd_4, ucu_omega_4_in_axes4_z, ucu_nu_1_t_2, ucu_S_ddot_x,
-        ucu_S_ddot_y, ucu_S_ddot_z, ucu_h_4_t_7, ucu_h_4_t_9, ucu_h_4_t_10, ucu_h_4_t_11,
-        ucu_h_4_t_12, inv_ucu_h_4_t_12, ucu_h_4_t_13, ucu_h_4_t_18, ucu_h_4_t_19, ucu_e_2_in_axes4_x,
-        axis_z_ucu_axes4_x, axis_z_ucu_axes4_y, axis_z_ucu_axes4_z, ucu_n_m1_x, ucu_n_m1_y,
-        ucu_n_m1_z, ucu_w_4_t, ucu_Q_xx, ucu_Q_xy, ucu_Q_xz, ucu_Q_yy, ucu_Q_yz, ucu_Q_zz,
-        ucu_M_ta_t_10, ucu_M_ta_t_11, ucu_M_ta_t_12, ucu_M_ta_t_13, ucu_M_ta_t_14, ucu_M_ta_t_15,
-        ucu_M_ta_t_16, ucu_M_ta_t_17, ucu_M_ta_t_18, ucu_M_aa_t, ucu_M_aa_t_2, ucu_M_aa_t_3,
-        ucu_M_aa_t_4, ucu_M_aa_t_5, ucu_M_aa_t_6, ucu_root_4_t_4, ucu_root_4_t_5, inv_ucu_root_4,
-        ucu_B_4_in_axes4_xy, ucu_B_4_in_axes4_xz, ucu_B_4_in_axes4_yx, ucu_B_4_in_axes4_yz,
-        ucu_B_4_in_axes4_zx, ucu_B_4_in_axes4_zy, ucu_acc_4_in_axes4_x, ucu_acc_4_in_axes4_y,
-        ucu_acc_4_in_axes4_z, ucu_mu_2_in_axes2_x, ucu_mu_2_in_axes2_y, ucu_mu_2_in_axes2_z;
+    real ucu_q_x, ucu_q_y, ucu_q_z, ucu_h_4_t_7, ucu_h_4_t_9, ucu_h_4_t_10, ucu_h_4_t_11,
+        ucu_h_4_t_12, inv_ucu_h_4_t_12, ucu_h_4_t_13, ucu_e_1_in_axes4_z, ucu_h_4_t_19,
+        ucu_e_2_in_axes4_x, ucu_e_2_in_axes4_y, ucu_h_4_in_axes1_y, ucu_h_4_in_spec2_z, ucu_v_1_t,
+        ucu_e_1_in_axes4_y, ucu_v_1_in_axes2_z, ucu_v_1_t_2, ucu_n_m1_in_axes4_x, axis_z_ucu_axes4_x,
+        axis_z_ucu_axes4_y, axis_z_ucu_axes4_z, axis_y_ucu_axes4_x, axis_y_ucu_axes4_y,
+        axis_y_ucu_axes4_z, axis_x_ucu_axes4_x, axis_x_ucu_axes4_y, axis_x_ucu_axes4_z,
+        ucu_end_p1_in_axes4_x, ucu_n_m1_in_axes2_z, ucu_n_m1_x, ucu_n_m1_y, ucu_n_m1_z,
+        inv_ucu_v_1_in_axes2_z, ucu_w_4_t, inv_ucu_end_p1_in_axes4_x, ucu_end_p1_in_axes4_y,
+        ucu_g_in_axes4_x, ucu_g_in_axes4_y, ucu_g_in_axes4_z, ucu_g_in_axes2_z, ucu_g_in_axes2_x,
+        ucu_g_in_axes2_y, ucu_mu_2_t_11, ucu_mu_2_t_12, ucu_mu_2_t_13, ucu_H_a_3_x, ucu_H_a_3_y,
+        ucu_H_a_3_z, ucu_etad_1_t, ucu_S_dot_t, ucu_S_dot_t_2, ucu_S_dot_t_3, ucu_S_dot_in_axes2_x,
+        ucu_qd_1, ucu_qd_2, ucu_qd_4_t, ucu_qd_4_t_2, ucu_omega_in_axes4_z, ucu_omega_1_in_axes2_x,
+        ucu_omega_2_in_axes4_x, ucu_omega_2_in_axes4_y, ucu_W_2_in_axes2_yz, ucu_W_2_in_axes2_xz,
+        ucu_W_2_in_axes2_xy, ucu_W_2_t, ucu_W_2_t_2, ucu_W_2_in_axes4_xy, ucu_W_2_t_3, ucu_zeta_2_t,
+        ucu_bias_in_axes4_x, ucu_bias_in_axes4_y, ucu_nd_m1_t, ucu_nu_1_t, ucu_nu_1_t_2, ucu_nu_1_t_4,
+        ucu_nu_1_t_5, ucu_phi_4_t, ucu_mu_4_t, ucu_mu_2_t_8, ucu_mu_2_t_9, ucu_mu_2_t_10, ucu_qd_4_2,
+        ucu_omega_4_in_axes4_z_2, ucu_zeta_4_in_axes4_x_2, ucu_nu_1_2, ucu_S_ddot_in_axes4_x,
+        ucu_S_ddot_in_axes4_y, ucu_S_ddot_in_axes4_z, ucu_qdd_1, ucu_qdd_2, ucu_qdd_4_t, ucu_Q_xx,
+        ucu_Q_xy, ucu_Q_xz, ucu_Q_yy, ucu_Q_yz, ucu_Q_zz, ucu_M_ta_t_10, ucu_M_ta_t_11, ucu_M_ta_t_12,
+        ucu_M_ta_t_13, ucu_M_ta_t_14, ucu_M_ta_t_15, ucu_M_ta_t_16, ucu_M_ta_t_17, ucu_M_ta_t_18,
+        ucu_M_aa_t, ucu_M_aa_t_2, ucu_M_aa_t_3, ucu_M_aa_t_4, ucu_M_aa_t_5, ucu_M_aa_t_6, ucu_U_x,
+        ucu_U_y, ucu_U_z, ucu_Z_a_t, ucu_Z_a_t_2, ucu_Z_a_t_3, ucu_acc_4_in_axes4_x,
+        ucu_acc_4_in_axes4_y, ucu_acc_4_in_axes4_z, ucu_phi_4_in_axes4_z, ucu_c_in_axes4_x,
+        ucu_c_in_axes4_y, ucu_c_m_x, ucu_c_m_y, ucu_c_m_z;
 } values_ucu;
 
 INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1602,327 +1603,18 @@ INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real ucu_q_x = R_xy*m->ucu_platform_point_y[i] + R_xz*m->ucu_platform_point_z[i] +
+    v->ucu_q_x = R_xy*m->ucu_platform_point_y[i] + R_xz*m->ucu_platform_point_z[i] +
         R_xx*m->ucu_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real ucu_q_y = R_yx*m->ucu_platform_point_x[i] + R_yz*m->ucu_platform_point_z[i] +
+    v->ucu_q_y = R_yx*m->ucu_platform_point_x[i] + R_yz*m->ucu_platform_point_z[i] +
         R_yy*m->ucu_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real ucu_q_z = R_zx*m->ucu_platform_point_x[i] + R_zy*m->ucu_platform_point_y[i] +
+    v->ucu_q_z = R_zx*m->ucu_platform_point_x[i] + R_zy*m->ucu_platform_point_y[i] +
         R_zz*m->ucu_platform_point_z[i];
-    /* (ucu-S) from the base point to the connection point */
-    const real t_x = X[0*w + j];
-    const real ucu_S_x = t_x - m->ucu_base_point_x[i] + ucu_q_x;
-    const real t_y = X[1*w + j];
-    const real ucu_S_y = t_y - m->ucu_base_point_y[i] + ucu_q_y;
-    const real t_z = X[2*w + j];
-    const real ucu_S_z = t_z - m->ucu_base_point_z[i] + ucu_q_z;
-    const real ucu_S_in_turn1_x = ucu_S_x*m->ucu_base_frame_xx[i] +
-        ucu_S_y*m->ucu_base_frame_yx[i] + ucu_S_z*m->ucu_base_frame_zx[i];
-    const real ucu_S_in_turn1_y = ucu_S_x*m->ucu_base_frame_xy[i] +
-        ucu_S_y*m->ucu_base_frame_yy[i] + ucu_S_z*m->ucu_base_frame_zy[i];
-    const real ucu_S_in_turn1_z = ucu_S_x*m->ucu_base_frame_xz[i] +
-        ucu_S_y*m->ucu_base_frame_yz[i] + ucu_S_z*m->ucu_base_frame_zz[i];
-    /* (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x +
-        ucu_S_in_turn1_y*ucu_S_in_turn1_y;
-    const real ucu_root_1 = m->ucu_branch_1[i]*root(ucu_root_1_t);
-    /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_ucu_root_1 = 1/ucu_root_1;
-    const real ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x;
-    /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-    const real ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y;
-    /* (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch */
-    const real ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t;
-    const real ucu_root_2 = m->ucu_branch_2[i]*root(ucu_root_2_t);
-    /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_ucu_root_2 = 1/ucu_root_2;
-    const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
-    /* (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch */
-    const real ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z;
-    const real ucu_root_4_t =
-        m->ucu_platform_joint_axis_platform_x[i]*(R_yx*m->ucu_base_frame_yx[i] +
-        R_zx*m->ucu_base_frame_zx[i] + R_xx*m->ucu_base_frame_xx[i]) +
-        m->ucu_platform_joint_axis_platform_y[i]*(R_xy*m->ucu_base_frame_xx[i] +
-        R_zy*m->ucu_base_frame_zx[i] + R_yy*m->ucu_base_frame_yx[i]) +
-        m->ucu_platform_joint_axis_platform_z[i]*(R_xz*m->ucu_base_frame_xx[i] +
-        R_yz*m->ucu_base_frame_yx[i] + R_zz*m->ucu_base_frame_zx[i]);
-    const real ucu_root_4_t_2 =
-        m->ucu_platform_joint_axis_platform_x[i]*(R_yx*m->ucu_base_frame_yy[i] +
-        R_zx*m->ucu_base_frame_zy[i] + R_xx*m->ucu_base_frame_xy[i]) +
-        m->ucu_platform_joint_axis_platform_y[i]*(R_xy*m->ucu_base_frame_xy[i] +
-        R_zy*m->ucu_base_frame_zy[i] + R_yy*m->ucu_base_frame_yy[i]) +
-        m->ucu_platform_joint_axis_platform_z[i]*(R_xz*m->ucu_base_frame_xy[i] +
-        R_yz*m->ucu_base_frame_yy[i] + R_zz*m->ucu_base_frame_zy[i]);
-    const real ucu_root_4_t_3 =
-        m->ucu_platform_joint_axis_platform_x[i]*(R_yx*m->ucu_base_frame_yz[i] +
-        R_zx*m->ucu_base_frame_zz[i] + R_xx*m->ucu_base_frame_xz[i]) +
-        m->ucu_platform_joint_axis_platform_y[i]*(R_xy*m->ucu_base_frame_xz[i] +
-        R_zy*m->ucu_base_frame_zz[i] + R_yy*m->ucu_base_frame_yz[i]) +
-        m->ucu_platform_joint_axis_platform_z[i]*(R_xz*m->ucu_base_frame_xz[i] +
-        R_yz*m->ucu_base_frame_yz[i] + R_zz*m->ucu_base_frame_zz[i]);
-    const real ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1;
-    const real ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1;
-    const real ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3;
-    const real ucu_root_4_t_6 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x +
-        ucu_root_4_t_5*ucu_root_4_t_5;
-    const real ucu_root_4 = m->ucu_branch_4[i]*root(ucu_root_4_t_6);
-    /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
-    const real inv_ucu_root_4 = 1/ucu_root_4;
-    const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x;
-    /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-    const real ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5;
-    const real ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y;
-    const real ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4;
-    const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2;
-    const real ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t;
-    const real ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x +
-        ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y;
-    const real ucu_v_1_t_2 = ucu_c_4*ucu_v_1_in_axes4_y -
-        ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x;
-    /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 +
-        ucu_e_1_in_axes4_z*ucu_root_4_t_3;
-    const real ucu_n_m1_in_axes2_z = ucu_c_4*ucu_n_m1_in_axes4_x;
-    /* (ucu-w_1) force part of reciprocal wrench 1 */
-    const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x +
-        ucu_e_2_in_axes4_y*ucu_root_4_t_5;
-    /* (ucu-w_3) force part of reciprocal wrench 3 */
-    const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
-    const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
-    const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
-    /* (ucu-m1_w_4) moment part 1 of reciprocal wrench 4 */
-    const real inv_ucu_end_p1_in_axes4_x = 1/ucu_end_p1_in_axes4_x;
-    /* (ucu-qd_1) rate of joint 1 */
-    const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
-    /* (ucu-nd_m1) rate of moment direction 1 */
-    const real ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x -
-        ucu_c_4*ucu_root_4_t_5;
-    /* (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real ucu_g_in_axes2_z = ucu_c_1*m->ucu_mu_2_t_2[i] - m->ucu_mu_2_t[i]*ucu_s_1;
-    /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-    const real ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y;
-    const real ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z;
-    const real ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x;
-    /* (ucu-qd_4) rate of joint 4 */
-    const real ucu_qd_4_t = ucu_c_4*ucu_e_1_in_axes4_z;
-    const real ucu_qd_4_t_2 = -ucu_e_2_in_axes4_y*ucu_s_1 - ucu_c_1*ucu_qd_4_t;
-    const real ucu_qd_4_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_qd_4_t*ucu_s_1;
-    const real axis_y_ucu_axes4_x = m->ucu_base_frame_xz[i]*ucu_e_1_in_axes4_y +
-        m->ucu_base_frame_xx[i]*ucu_qd_4_t_2 + m->ucu_base_frame_xy[i]*ucu_qd_4_t_3;
-    const real axis_y_ucu_axes4_y = m->ucu_base_frame_yz[i]*ucu_e_1_in_axes4_y +
-        m->ucu_base_frame_yx[i]*ucu_qd_4_t_2 + m->ucu_base_frame_yy[i]*ucu_qd_4_t_3;
-    const real axis_y_ucu_axes4_z = m->ucu_base_frame_zz[i]*ucu_e_1_in_axes4_y +
-        m->ucu_base_frame_zx[i]*ucu_qd_4_t_2 + m->ucu_base_frame_zy[i]*ucu_qd_4_t_3;
-    const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z -
-        axis_y_ucu_axes4_z*ucu_w_3_y;
-    const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x -
-        axis_y_ucu_axes4_x*ucu_w_3_z;
-    const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y -
-        axis_y_ucu_axes4_y*ucu_w_3_x;
-    const real ucu_qd_4_t_4 = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x +
-        ucu_n_m1_in_axes4_x*ucu_v_1_t;
-    v->ucu_q_x = ucu_q_x;
-    v->ucu_q_y = ucu_q_y;
-    v->ucu_q_z = ucu_q_z;
-    v->ucu_S_in_turn1_z = ucu_S_in_turn1_z;
-    v->ucu_root_1_t = ucu_root_1_t;
-    v->ucu_c_1 = ucu_c_1;
-    v->ucu_s_1 = ucu_s_1;
-    v->ucu_root_2_t = ucu_root_2_t;
-    v->ucu_root_2 = ucu_root_2;
-    v->inv_ucu_root_2 = inv_ucu_root_2;
-    v->ucu_c_2 = ucu_c_2;
-    v->ucu_e_1_in_axes4_z = ucu_e_1_in_axes4_z;
-    v->ucu_root_4_t = ucu_root_4_t;
-    v->ucu_root_4_t_2 = ucu_root_4_t_2;
-    v->ucu_root_4_t_3 = ucu_root_4_t_3;
-    v->ucu_end_p1_in_turn4_x = ucu_end_p1_in_turn4_x;
-    v->ucu_root_4_t_6 = ucu_root_4_t_6;
-    v->ucu_c_4 = ucu_c_4;
-    v->ucu_e_2_in_axes4_y = ucu_e_2_in_axes4_y;
-    v->ucu_v_1_t = ucu_v_1_t;
-    v->ucu_e_1_in_axes4_y = ucu_e_1_in_axes4_y;
-    v->ucu_v_1_in_axes4_x = ucu_v_1_in_axes4_x;
-    v->ucu_v_1_in_axes4_y = ucu_v_1_in_axes4_y;
-    v->ucu_v_1_in_axes2_z = ucu_v_1_in_axes2_z;
-    v->ucu_v_1_t_2 = ucu_v_1_t_2;
-    v->ucu_n_m1_in_axes4_x = ucu_n_m1_in_axes4_x;
-    v->ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes2_z;
-    v->ucu_end_p1_in_axes4_x = ucu_end_p1_in_axes4_x;
-    v->ucu_w_3_x = ucu_w_3_x;
-    v->ucu_w_3_y = ucu_w_3_y;
-    v->ucu_w_3_z = ucu_w_3_z;
-    v->inv_ucu_end_p1_in_axes4_x = inv_ucu_end_p1_in_axes4_x;
-    v->inv_ucu_v_1_in_axes2_z = inv_ucu_v_1_in_axes2_z;
-    v->ucu_end_p1_in_axes4_y = ucu_end_p1_in_axes4_y;
-    v->ucu_g_in_axes2_z = ucu_g_in_axes2_z;
-    v->ucu_H_a_3_x = ucu_H_a_3_x;
-    v->ucu_H_a_3_y = ucu_H_a_3_y;
-    v->ucu_H_a_3_z = ucu_H_a_3_z;
-    v->axis_y_ucu_axes4_x = axis_y_ucu_axes4_x;
-    v->axis_y_ucu_axes4_y = axis_y_ucu_axes4_y;
-    v->axis_y_ucu_axes4_z = axis_y_ucu_axes4_z;
-    v->axis_x_ucu_axes4_x = axis_x_ucu_axes4_x;
-    v->axis_x_ucu_axes4_y = axis_x_ucu_axes4_y;
-    v->axis_x_ucu_axes4_z = axis_x_ucu_axes4_z;
-    v->ucu_qd_4_t_4 = ucu_qd_4_t_4;
-}
-
-INLINE void stage_ucu_A_X(size_t w, size_t j, const real *A, values_ucu *v)
-{
-    /* (ucu-a_p) acceleration of the connection point without its centripetal part */
-    const real alpha_y = A[4*w + j];
-    const real alpha_z = A[5*w + j];
-    const real t_ddot_x = A[0*w + j];
-    const real ucu_a_p_x = t_ddot_x + alpha_y*v->ucu_q_z - alpha_z*v->ucu_q_y;
-    const real alpha_x = A[3*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real ucu_a_p_y = t_ddot_y + alpha_z*v->ucu_q_x - alpha_x*v->ucu_q_z;
-    const real t_ddot_z = A[2*w + j];
-    const real ucu_a_p_z = t_ddot_z + alpha_x*v->ucu_q_y - alpha_y*v->ucu_q_x;
-    /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real ucu_etad_1_t = v->ucu_n_m1_in_axes4_x*(alpha_x*v->axis_x_ucu_axes4_x +
-        alpha_y*v->axis_x_ucu_axes4_y + alpha_z*v->axis_x_ucu_axes4_z) -
-        v->ucu_end_p1_in_axes4_x*(alpha_x*v->ucu_w_3_x + alpha_y*v->ucu_w_3_y +
-        alpha_z*v->ucu_w_3_z);
-    v->ucu_a_p_x = ucu_a_p_x;
-    v->ucu_a_p_y = ucu_a_p_y;
-    v->ucu_a_p_z = ucu_a_p_z;
-    v->ucu_etad_1_t = ucu_etad_1_t;
-}
-
-INLINE void stage_ucu_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_ucu *v)
-{
-    /* (ucu-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real ucu_S_dot_t = omega_y*v->ucu_q_z - omega_z*v->ucu_q_y;
-    const real omega_x = V[3*w + j];
-    const real ucu_S_dot_t_2 = omega_z*v->ucu_q_x - omega_x*v->ucu_q_z;
-    const real ucu_S_dot_t_3 = omega_x*v->ucu_q_y - omega_y*v->ucu_q_x;
-    const real t_dot_x = V[0*w + j];
-    const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
-    const real t_dot_y = V[1*w + j];
-    const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
-    const real t_dot_z = V[2*w + j];
-    const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
-    const real ucu_S_dot_t_4 = ucu_S_dot_x*m->ucu_base_frame_xx[i] +
-        ucu_S_dot_y*m->ucu_base_frame_yx[i] + ucu_S_dot_z*m->ucu_base_frame_zx[i];
-    const real ucu_S_dot_t_5 = ucu_S_dot_x*m->ucu_base_frame_xy[i] +
-        ucu_S_dot_y*m->ucu_base_frame_yy[i] + ucu_S_dot_z*m->ucu_base_frame_zy[i];
-    const real ucu_S_dot_t_6 = ucu_S_dot_x*m->ucu_base_frame_xz[i] +
-        ucu_S_dot_y*m->ucu_base_frame_yz[i] + ucu_S_dot_z*m->ucu_base_frame_zz[i];
-    const real ucu_S_dot_t_7 = ucu_S_dot_t_4*v->ucu_c_1 + ucu_S_dot_t_5*v->ucu_s_1;
-    const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*v->ucu_e_1_in_axes4_z +
-        ucu_S_dot_t_7*v->ucu_c_2;
-    /* (ucu-qd_1) rate of joint 1 */
-    const real ucu_qd_1 = v->inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*v->ucu_c_1 -
-        ucu_S_dot_t_4*v->ucu_s_1);
-    /* (ucu-qd_2) rate of joint 2 */
-    const real ucu_qd_2 = v->inv_ucu_root_2*(ucu_S_dot_t_7*v->ucu_e_1_in_axes4_z -
-        ucu_S_dot_t_6*v->ucu_c_2 + ucu_qd_1*v->ucu_v_1_t_2);
-    /* (ucu-omega_1) angular velocity of link 1 */
-    const real ucu_omega_1_in_axes2_x = v->ucu_e_1_in_axes4_z*ucu_qd_1;
-    const real ucu_omega_1_in_axes2_y = -v->ucu_c_2*ucu_qd_1;
-    /* (ucu-omega_2) angular velocity of link 2 */
-    const real ucu_omega_2_in_axes4_x = v->ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y +
-        v->ucu_c_4*ucu_qd_2;
-    const real ucu_omega_2_in_axes4_y = v->ucu_e_2_in_axes4_y*ucu_qd_2 -
-        v->ucu_c_4*ucu_omega_1_in_axes2_y;
-    /* (ucu-W_2) centripetal tensor of link 2 */
-    const real ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2;
-    const real ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2;
-    const real ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y;
-    const real ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y;
-    /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*v->ucu_e_2_in_axes4_y;
-    /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
-    const real ucu_bias_t = 2*ucu_S_dot_in_axes2_x;
-    const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
-        v->ucu_root_2*(ucu_W_2_in_axes2_xz*v->ucu_c_4 +
-        ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
-    const real ucu_bias_in_axes4_y =
-        v->ucu_root_2*(ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y + ucu_zeta_2_t) -
-        ucu_bias_t*ucu_omega_2_in_axes4_x;
-    /* (ucu-nd_m1) rate of moment direction 1 */
-    const real ucu_omega_in_axes4_z = omega_x*v->ucu_w_3_x + omega_y*v->ucu_w_3_y +
-        omega_z*v->ucu_w_3_z;
-    /* (ucu-qd_4) rate of joint 4 */
-    const real ucu_omega_in_axes4_x = v->axis_x_ucu_axes4_x*omega_x +
-        v->axis_x_ucu_axes4_y*omega_y + v->axis_x_ucu_axes4_z*omega_z;
-    const real ucu_qd_4 = ucu_omega_in_axes4_z -
-        v->inv_ucu_end_p1_in_axes4_x*(v->ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x +
-        ucu_qd_1*v->ucu_qd_4_t_4 - v->ucu_n_m1_in_axes2_z*ucu_qd_2);
-    /* (ucu-omega_4) angular velocity of link 4 */
-    const real ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4;
-    /* (ucu-nd_m1) */
-    const real ucu_omega_in_axes4_y = v->axis_y_ucu_axes4_x*omega_x +
-        v->axis_y_ucu_axes4_y*omega_y + v->axis_y_ucu_axes4_z*omega_z;
-    const real ucu_nd_m1_in_axes4_x = v->ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
-        v->ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
-        v->ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
-    const real ucu_nd_m1_in_axes4_z = v->ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
-        v->ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y -
-        v->ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z;
-    /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
-        ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
-        ucu_omega_in_axes4_z) + (ucu_omega_2_in_axes4_y -
-        ucu_omega_in_axes4_y)*(v->ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
-        v->ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
-    v->ucu_S_dot_t = ucu_S_dot_t;
-    v->ucu_S_dot_t_2 = ucu_S_dot_t_2;
-    v->ucu_S_dot_t_3 = ucu_S_dot_t_3;
-    v->ucu_S_dot_t_4 = ucu_S_dot_t_4;
-    v->ucu_S_dot_t_5 = ucu_S_dot_t_5;
-    v->ucu_S_dot_t_6 = ucu_S_dot_t_6;
-    v->ucu_qd_1 = ucu_qd_1;
-    v->ucu_qd_2 = ucu_qd_2;
-    v->ucu_omega_1_in_axes2_x = ucu_omega_1_in_axes2_x;
-    v->ucu_omega_1_in_axes2_y = ucu_omega_1_in_axes2_y;
-    v->ucu_omega_2_in_axes4_x = ucu_omega_2_in_axes4_x;
-    v->ucu_omega_2_in_axes4_y = ucu_omega_2_in_axes4_y;
-    v->ucu_W_2_in_axes2_yz = ucu_W_2_in_axes2_yz;
-    v->ucu_W_2_in_axes2_xz = ucu_W_2_in_axes2_xz;
-    v->ucu_W_2_in_axes2_xy = ucu_W_2_in_axes2_xy;
-    v->ucu_W_2_in_axes4_xy = ucu_W_2_in_axes4_xy;
-    v->ucu_zeta_2_t = ucu_zeta_2_t;
-    v->ucu_bias_in_axes4_x = ucu_bias_in_axes4_x;
-    v->ucu_bias_in_axes4_y = ucu_bias_in_axes4_y;
-    v->ucu_omega_in_axes4_z = ucu_omega_in_axes4_z;
-    v->ucu_qd_4 = ucu_qd_4;
-    v->ucu_omega_4_in_axes4_z = ucu_omega_4_in_axes4_z;
-    v->ucu_nu_1_t_2 = ucu_nu_1_t_2;
-}
-
-INLINE void stage_ucu_A_V_X(size_t w, size_t j, const real *V, values_ucu *v)
-{
-    /* (ucu-S_ddot) acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real ucu_S_ddot_x = omega_y*v->ucu_S_dot_t_3 - omega_z*v->ucu_S_dot_t_2 +
-        v->ucu_a_p_x;
-    const real omega_x = V[3*w + j];
-    const real ucu_S_ddot_y = omega_z*v->ucu_S_dot_t - omega_x*v->ucu_S_dot_t_3 +
-        v->ucu_a_p_y;
-    const real ucu_S_ddot_z = omega_x*v->ucu_S_dot_t_2 - omega_y*v->ucu_S_dot_t +
-        v->ucu_a_p_z;
-    v->ucu_S_ddot_x = ucu_S_ddot_x;
-    v->ucu_S_ddot_y = ucu_S_ddot_y;
-    v->ucu_S_ddot_z = ucu_S_ddot_z;
-}
-
-INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *s,
-    const real *X, values_ucu *v)
-{
-    /* (ucu-h_4) first moment of link 4 about the connection point */
     const real t_x = X[0*w + j];
     const real ucu_h_4_t = t_x - m->ucu_base_point_x[i] + v->ucu_q_x;
     const real t_y = X[1*w + j];
@@ -1935,25 +1627,16 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
         m->ucu_base_frame_yy[i]*ucu_h_4_t_2 + m->ucu_base_frame_zy[i]*ucu_h_4_t_3;
     const real ucu_h_4_t_6 = m->ucu_base_frame_xz[i]*ucu_h_4_t +
         m->ucu_base_frame_yz[i]*ucu_h_4_t_2 + m->ucu_base_frame_zz[i]*ucu_h_4_t_3;
-    const real ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5;
-    const real ucu_h_4_t_8 = m->ucu_branch_1[i]*root(ucu_h_4_t_7);
+    v->ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5;
+    const real ucu_h_4_t_8 = m->ucu_branch_1[i]*root(v->ucu_h_4_t_7);
     const real inv_ucu_h_4_t_8 = 1/ucu_h_4_t_8;
-    const real ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4;
-    const real ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5;
-    const real ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7;
-    const real ucu_h_4_t_12 = m->ucu_branch_2[i]*root(ucu_h_4_t_11);
-    const real inv_ucu_h_4_t_12 = 1/ucu_h_4_t_12;
-    const real ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8;
-    const real ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6;
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
+    v->ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4;
+    v->ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5;
+    v->ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + v->ucu_h_4_t_7;
+    v->ucu_h_4_t_12 = m->ucu_branch_2[i]*root(v->ucu_h_4_t_11);
+    v->inv_ucu_h_4_t_12 = 1/v->ucu_h_4_t_12;
+    v->ucu_h_4_t_13 = v->inv_ucu_h_4_t_12*ucu_h_4_t_8;
+    v->ucu_e_1_in_axes4_z = v->inv_ucu_h_4_t_12*ucu_h_4_t_6;
     const real ucu_h_4_t_14 =
         m->ucu_platform_joint_axis_platform_x[i]*(R_yx*m->ucu_base_frame_yx[i] +
         R_zx*m->ucu_base_frame_zx[i] + R_xx*m->ucu_base_frame_xx[i]) +
@@ -1975,182 +1658,392 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
         R_zy*m->ucu_base_frame_zz[i] + R_yy*m->ucu_base_frame_yz[i]) +
         m->ucu_platform_joint_axis_platform_z[i]*(R_xz*m->ucu_base_frame_xz[i] +
         R_yz*m->ucu_base_frame_yz[i] + R_zz*m->ucu_base_frame_zz[i]);
-    const real ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9;
-    const real ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14;
-    const real ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16;
-    const real ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x +
-        ucu_h_4_t_18*ucu_h_4_t_18;
-    const real ucu_h_4_t_20 = m->ucu_branch_4[i]*root(ucu_h_4_t_19);
+    const real ucu_h_4_t_17 = v->ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*v->ucu_h_4_t_9;
+    const real ucu_end_p1_in_turn4_x = ucu_h_4_t_15*v->ucu_h_4_t_9 -
+        v->ucu_h_4_t_10*ucu_h_4_t_14;
+    const real ucu_h_4_t_18 = v->ucu_e_1_in_axes4_z*ucu_h_4_t_17 -
+        v->ucu_h_4_t_13*ucu_h_4_t_16;
+    v->ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18;
+    const real ucu_h_4_t_20 = m->ucu_branch_4[i]*root(v->ucu_h_4_t_19);
     const real inv_ucu_h_4_t_20 = 1/ucu_h_4_t_20;
-    const real ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x;
-    const real ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18;
-    const real ucu_h_4_in_spec2_z = ucu_e_2_in_axes4_x*m->ucu_h_4_in_spec4_z[i] -
-        ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_y[i];
-    /* (ucu-J_4) inertia tensor of link 4 about the connection point */
-    const real ucu_J_4_in_axes2_xz = m->ucu_J_4_in_spec4_xy[i]*ucu_e_2_in_axes4_x +
-        m->ucu_J_4_in_spec4_xz[i]*ucu_e_2_in_axes4_y;
+    v->ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x;
+    v->ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18;
+    v->ucu_h_4_in_axes1_y = v->ucu_e_2_in_axes4_x*m->ucu_h_4_in_spec4_y[i] +
+        v->ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_z[i];
+    v->ucu_h_4_in_spec2_z = v->ucu_e_2_in_axes4_x*m->ucu_h_4_in_spec4_z[i] -
+        v->ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_y[i];
     /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-    const real ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13;
-    const real ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13;
-    const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12;
-    const real ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t;
-    const real ucu_v_1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x +
-        ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y;
-    const real ucu_v_1_t_2 = ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y -
-        ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x;
+    v->ucu_v_1_t = v->ucu_e_2_in_axes4_y*v->ucu_h_4_t_13;
+    v->ucu_e_1_in_axes4_y = v->ucu_e_2_in_axes4_x*v->ucu_h_4_t_13;
+    const real ucu_v_1_in_axes4_x = v->ucu_e_1_in_axes4_y*v->ucu_h_4_t_12;
+    const real ucu_v_1_in_axes4_y = v->ucu_h_4_t_12*v->ucu_v_1_t;
+    v->ucu_v_1_in_axes2_z = v->ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x +
+        v->ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y;
+    v->ucu_v_1_t_2 = v->ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y -
+        v->ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x;
     /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 +
-        ucu_h_4_t_13*ucu_h_4_t_17;
-    const real axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t;
-    const real axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2;
-    const real axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3;
-    const real ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x;
-    const real ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t;
-    const real ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t;
-    const real axis_y_ucu_axes4_x = m->ucu_base_frame_xz[i]*ucu_e_1_in_axes4_y +
+    v->ucu_n_m1_in_axes4_x = v->ucu_e_1_in_axes4_z*ucu_h_4_t_16 +
+        v->ucu_h_4_t_13*ucu_h_4_t_17;
+    v->axis_z_ucu_axes4_x = v->inv_ucu_h_4_t_12*ucu_h_4_t;
+    v->axis_z_ucu_axes4_y = v->inv_ucu_h_4_t_12*ucu_h_4_t_2;
+    v->axis_z_ucu_axes4_z = v->inv_ucu_h_4_t_12*ucu_h_4_t_3;
+    const real ucu_n_m1_t = v->ucu_e_1_in_axes4_z*v->ucu_e_2_in_axes4_x;
+    const real ucu_n_m1_t_2 = -v->ucu_e_2_in_axes4_y*v->ucu_h_4_t_10 -
+        v->ucu_h_4_t_9*ucu_n_m1_t;
+    const real ucu_n_m1_t_3 = v->ucu_e_2_in_axes4_y*v->ucu_h_4_t_9 -
+        v->ucu_h_4_t_10*ucu_n_m1_t;
+    v->axis_y_ucu_axes4_x = m->ucu_base_frame_xz[i]*v->ucu_e_1_in_axes4_y +
         m->ucu_base_frame_xx[i]*ucu_n_m1_t_2 + m->ucu_base_frame_xy[i]*ucu_n_m1_t_3;
-    const real axis_y_ucu_axes4_y = m->ucu_base_frame_yz[i]*ucu_e_1_in_axes4_y +
+    v->axis_y_ucu_axes4_y = m->ucu_base_frame_yz[i]*v->ucu_e_1_in_axes4_y +
         m->ucu_base_frame_yx[i]*ucu_n_m1_t_2 + m->ucu_base_frame_yy[i]*ucu_n_m1_t_3;
-    const real axis_y_ucu_axes4_z = m->ucu_base_frame_zz[i]*ucu_e_1_in_axes4_y +
+    v->axis_y_ucu_axes4_z = m->ucu_base_frame_zz[i]*v->ucu_e_1_in_axes4_y +
         m->ucu_base_frame_zx[i]*ucu_n_m1_t_2 + m->ucu_base_frame_zy[i]*ucu_n_m1_t_3;
-    const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*axis_z_ucu_axes4_z -
-        axis_y_ucu_axes4_z*axis_z_ucu_axes4_y;
-    const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*axis_z_ucu_axes4_x -
-        axis_y_ucu_axes4_x*axis_z_ucu_axes4_z;
-    const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*axis_z_ucu_axes4_y -
-        axis_y_ucu_axes4_y*axis_z_ucu_axes4_x;
-    const real ucu_end_p1_in_axes4_x = ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x +
-        ucu_e_2_in_axes4_y*ucu_h_4_t_18;
-    const real ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x;
-    const real ucu_n_m1_x = axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x -
-        axis_z_ucu_axes4_x*ucu_end_p1_in_axes4_x;
-    const real ucu_n_m1_y = axis_x_ucu_axes4_y*ucu_n_m1_in_axes4_x -
-        axis_z_ucu_axes4_y*ucu_end_p1_in_axes4_x;
-    const real ucu_n_m1_z = axis_x_ucu_axes4_z*ucu_n_m1_in_axes4_x -
-        axis_z_ucu_axes4_z*ucu_end_p1_in_axes4_x;
+    v->axis_x_ucu_axes4_x = v->axis_y_ucu_axes4_y*v->axis_z_ucu_axes4_z -
+        v->axis_y_ucu_axes4_z*v->axis_z_ucu_axes4_y;
+    v->axis_x_ucu_axes4_y = v->axis_y_ucu_axes4_z*v->axis_z_ucu_axes4_x -
+        v->axis_y_ucu_axes4_x*v->axis_z_ucu_axes4_z;
+    v->axis_x_ucu_axes4_z = v->axis_y_ucu_axes4_x*v->axis_z_ucu_axes4_y -
+        v->axis_y_ucu_axes4_y*v->axis_z_ucu_axes4_x;
+    v->ucu_end_p1_in_axes4_x = v->ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x +
+        v->ucu_e_2_in_axes4_y*ucu_h_4_t_18;
+    v->ucu_n_m1_in_axes2_z = v->ucu_e_2_in_axes4_x*v->ucu_n_m1_in_axes4_x;
+    v->ucu_n_m1_x = v->axis_x_ucu_axes4_x*v->ucu_n_m1_in_axes4_x -
+        v->axis_z_ucu_axes4_x*v->ucu_end_p1_in_axes4_x;
+    v->ucu_n_m1_y = v->axis_x_ucu_axes4_y*v->ucu_n_m1_in_axes4_x -
+        v->axis_z_ucu_axes4_y*v->ucu_end_p1_in_axes4_x;
+    v->ucu_n_m1_z = v->axis_x_ucu_axes4_z*v->ucu_n_m1_in_axes4_x -
+        v->axis_z_ucu_axes4_z*v->ucu_end_p1_in_axes4_x;
     /* (ucu-w_1) force part of reciprocal wrench 1 */
-    const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
-    const real ucu_w_1_in_axes4_x = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_x;
-    const real ucu_w_1_in_axes4_y = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_y;
-    /* (ucu-w_2) force part of reciprocal wrench 2 */
-    const real ucu_w_2_t = inv_ucu_h_4_t_12*inv_ucu_v_1_in_axes2_z*ucu_v_1_t_2;
-    const real ucu_w_2_in_axes4_x = inv_ucu_h_4_t_12*ucu_e_2_in_axes4_y +
-        ucu_e_2_in_axes4_x*ucu_w_2_t;
-    const real ucu_w_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_w_2_t -
-        inv_ucu_h_4_t_12*ucu_e_2_in_axes4_x;
+    v->inv_ucu_v_1_in_axes2_z = 1/v->ucu_v_1_in_axes2_z;
     /* (ucu-w_4) force part of reciprocal wrench 4 */
-    const real ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x +
-        ucu_n_m1_in_axes4_x*ucu_v_1_t;
-    const real inv_ucu_end_p1_in_axes4_x = 1/ucu_end_p1_in_axes4_x;
-    const real ucu_w_4_t_2 = inv_ucu_end_p1_in_axes4_x*inv_ucu_h_4_t_12*ucu_n_m1_in_axes2_z;
-    const real ucu_w_4_t_3 = inv_ucu_v_1_in_axes2_z*(inv_ucu_end_p1_in_axes4_x*ucu_w_4_t -
-        ucu_v_1_t_2*ucu_w_4_t_2);
-    const real ucu_w_4_in_axes4_x = ucu_e_2_in_axes4_y*ucu_w_4_t_2 -
-        ucu_e_2_in_axes4_x*ucu_w_4_t_3;
-    const real ucu_w_4_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_w_4_t_2 -
-        ucu_e_2_in_axes4_y*ucu_w_4_t_3;
+    v->ucu_w_4_t = v->ucu_e_1_in_axes4_z*v->ucu_end_p1_in_axes4_x +
+        v->ucu_n_m1_in_axes4_x*v->ucu_v_1_t;
+    v->inv_ucu_end_p1_in_axes4_x = 1/v->ucu_end_p1_in_axes4_x;
+    /* (ucu-nd_m1) rate of moment direction 1 */
+    v->ucu_end_p1_in_axes4_y = v->ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x -
+        v->ucu_e_2_in_axes4_x*ucu_h_4_t_18;
+    /* (ucu-acc_4) acceleration of the reference point of link 4, less gravity */
+    v->ucu_g_in_axes4_x = v->axis_x_ucu_axes4_x*m->gravity_x +
+        v->axis_x_ucu_axes4_y*m->gravity_y + v->axis_x_ucu_axes4_z*m->gravity_z;
+    v->ucu_g_in_axes4_y = v->axis_y_ucu_axes4_x*m->gravity_x +
+        v->axis_y_ucu_axes4_y*m->gravity_y + v->axis_y_ucu_axes4_z*m->gravity_z;
+    v->ucu_g_in_axes4_z = v->axis_z_ucu_axes4_x*m->gravity_x +
+        v->axis_z_ucu_axes4_y*m->gravity_y + v->axis_z_ucu_axes4_z*m->gravity_z;
+    /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ucu_mu_2_t_7 = v->ucu_h_4_t_10*m->ucu_mu_2_t_2[i] +
+        v->ucu_h_4_t_9*m->ucu_mu_2_t[i];
+    v->ucu_g_in_axes2_z = v->ucu_h_4_t_9*m->ucu_mu_2_t_2[i] -
+        v->ucu_h_4_t_10*m->ucu_mu_2_t[i];
+    v->ucu_g_in_axes2_x = v->ucu_e_1_in_axes4_z*m->ucu_mu_2_t_3[i] +
+        v->ucu_h_4_t_13*ucu_mu_2_t_7;
+    v->ucu_g_in_axes2_y = v->ucu_e_1_in_axes4_z*ucu_mu_2_t_7 -
+        v->ucu_h_4_t_13*m->ucu_mu_2_t_3[i];
+    v->ucu_mu_2_t_11 = v->ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_z[i] +
+        v->ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_y[i];
+    v->ucu_mu_2_t_12 = v->ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_y[i] -
+        v->ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_x[i];
+    v->ucu_mu_2_t_13 = v->ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_z[i] +
+        v->ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_x[i];
+    /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+    v->ucu_H_a_3_x = v->axis_z_ucu_axes4_z*v->ucu_q_y - v->axis_z_ucu_axes4_y*v->ucu_q_z;
+    v->ucu_H_a_3_y = v->axis_z_ucu_axes4_x*v->ucu_q_z - v->axis_z_ucu_axes4_z*v->ucu_q_x;
+    v->ucu_H_a_3_z = v->axis_z_ucu_axes4_y*v->ucu_q_x - v->axis_z_ucu_axes4_x*v->ucu_q_y;
+}
+
+INLINE void stage_ucu_A_X(size_t w, size_t j, const real *A, values_ucu *v)
+{
+    /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real alpha_x = A[3*w + j];
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    v->ucu_etad_1_t = v->ucu_n_m1_in_axes4_x*(alpha_x*v->axis_x_ucu_axes4_x +
+        alpha_y*v->axis_x_ucu_axes4_y + alpha_z*v->axis_x_ucu_axes4_z) -
+        v->ucu_end_p1_in_axes4_x*(alpha_x*v->axis_z_ucu_axes4_x +
+        alpha_y*v->axis_z_ucu_axes4_y + alpha_z*v->axis_z_ucu_axes4_z);
+}
+
+INLINE void stage_ucu_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_ucu *v)
+{
+    /* (ucu-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    v->ucu_S_dot_t = omega_y*v->ucu_q_z - omega_z*v->ucu_q_y;
+    const real omega_x = V[3*w + j];
+    v->ucu_S_dot_t_2 = omega_z*v->ucu_q_x - omega_x*v->ucu_q_z;
+    v->ucu_S_dot_t_3 = omega_x*v->ucu_q_y - omega_y*v->ucu_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real ucu_S_dot_x = t_dot_x + v->ucu_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real ucu_S_dot_y = t_dot_y + v->ucu_S_dot_t_2;
+    const real t_dot_z = V[2*w + j];
+    const real ucu_S_dot_z = t_dot_z + v->ucu_S_dot_t_3;
+    const real ucu_S_dot_t_4 = ucu_S_dot_x*m->ucu_base_frame_xx[i] +
+        ucu_S_dot_y*m->ucu_base_frame_yx[i] + ucu_S_dot_z*m->ucu_base_frame_zx[i];
+    const real ucu_S_dot_t_5 = ucu_S_dot_x*m->ucu_base_frame_xy[i] +
+        ucu_S_dot_y*m->ucu_base_frame_yy[i] + ucu_S_dot_z*m->ucu_base_frame_zy[i];
+    const real ucu_S_dot_t_6 = ucu_S_dot_x*m->ucu_base_frame_xz[i] +
+        ucu_S_dot_y*m->ucu_base_frame_yz[i] + ucu_S_dot_z*m->ucu_base_frame_zz[i];
+    const real ucu_S_dot_t_7 = ucu_S_dot_t_4*v->ucu_h_4_t_9 + ucu_S_dot_t_5*v->ucu_h_4_t_10;
+    v->ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*v->ucu_e_1_in_axes4_z +
+        ucu_S_dot_t_7*v->ucu_h_4_t_13;
+    /* (ucu-qd_1) rate of joint 1 */
+    v->ucu_qd_1 = v->inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*v->ucu_h_4_t_9 -
+        ucu_S_dot_t_4*v->ucu_h_4_t_10);
+    /* (ucu-qd_2) rate of joint 2 */
+    v->ucu_qd_2 = v->inv_ucu_h_4_t_12*(ucu_S_dot_t_7*v->ucu_e_1_in_axes4_z -
+        ucu_S_dot_t_6*v->ucu_h_4_t_13 + v->ucu_qd_1*v->ucu_v_1_t_2);
+    /* (ucu-qd_4) rate of joint 4 */
+    v->ucu_qd_4_t = v->ucu_qd_1*v->ucu_w_4_t;
+    v->ucu_qd_4_t_2 = v->ucu_n_m1_in_axes2_z*v->ucu_qd_2;
+    const real ucu_omega_in_axes4_x = v->axis_x_ucu_axes4_x*omega_x +
+        v->axis_x_ucu_axes4_y*omega_y + v->axis_x_ucu_axes4_z*omega_z;
+    v->ucu_omega_in_axes4_z = v->axis_z_ucu_axes4_x*omega_x + v->axis_z_ucu_axes4_y*omega_y +
+        v->axis_z_ucu_axes4_z*omega_z;
+    /* (ucu-omega_1) angular velocity of link 1 */
+    v->ucu_omega_1_in_axes2_x = v->ucu_e_1_in_axes4_z*v->ucu_qd_1;
+    const real ucu_omega_1_in_axes2_y = -v->ucu_h_4_t_13*v->ucu_qd_1;
+    /* (ucu-omega_2) angular velocity of link 2 */
+    v->ucu_omega_2_in_axes4_x = v->ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y +
+        v->ucu_e_2_in_axes4_x*v->ucu_qd_2;
+    v->ucu_omega_2_in_axes4_y = v->ucu_e_2_in_axes4_y*v->ucu_qd_2 -
+        v->ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y;
+    /* (ucu-W_2) centripetal tensor of link 2 */
+    v->ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*v->ucu_qd_2;
+    v->ucu_W_2_in_axes2_xz = v->ucu_omega_1_in_axes2_x*v->ucu_qd_2;
+    v->ucu_W_2_in_axes2_xy = v->ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y;
+    v->ucu_W_2_t = v->ucu_omega_2_in_axes4_x*v->ucu_omega_2_in_axes4_x;
+    v->ucu_W_2_t_2 = v->ucu_omega_2_in_axes4_y*v->ucu_omega_2_in_axes4_y;
+    v->ucu_W_2_in_axes4_xy = v->ucu_omega_2_in_axes4_x*v->ucu_omega_2_in_axes4_y;
+    v->ucu_W_2_t_3 = v->ucu_W_2_t + v->ucu_W_2_t_2;
+    /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    v->ucu_zeta_2_t = v->ucu_W_2_in_axes2_xz*v->ucu_e_2_in_axes4_y;
+    /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
+    const real ucu_bias_t = 2*v->ucu_S_dot_in_axes2_x;
+    v->ucu_bias_in_axes4_x = ucu_bias_t*v->ucu_omega_2_in_axes4_y +
+        v->ucu_h_4_t_12*(v->ucu_W_2_in_axes2_xz*v->ucu_e_2_in_axes4_x +
+        v->ucu_omega_1_in_axes2_x*v->ucu_omega_2_in_axes4_x);
+    v->ucu_bias_in_axes4_y =
+        v->ucu_h_4_t_12*(v->ucu_omega_1_in_axes2_x*v->ucu_omega_2_in_axes4_y +
+        v->ucu_zeta_2_t) - ucu_bias_t*v->ucu_omega_2_in_axes4_x;
+    /* (ucu-nd_m1) rate of moment direction 1 */
+    const real ucu_omega_in_axes4_y = v->axis_y_ucu_axes4_x*omega_x +
+        v->axis_y_ucu_axes4_y*omega_y + v->axis_y_ucu_axes4_z*omega_z;
+    v->ucu_nd_m1_t = v->ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y -
+        v->ucu_end_p1_in_axes4_y*v->ucu_omega_in_axes4_z;
+    const real ucu_nd_m1_in_axes4_x = v->ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
+        v->ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+        v->ucu_end_p1_in_axes4_y*v->ucu_omega_2_in_axes4_x;
+    /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
+    v->ucu_nu_1_t = v->ucu_end_p1_in_axes4_x*v->ucu_omega_2_in_axes4_x;
+    v->ucu_nu_1_t_2 = -v->ucu_W_2_in_axes2_yz*v->ucu_end_p1_in_axes4_x;
+    v->ucu_nu_1_t_4 = v->ucu_omega_2_in_axes4_y - ucu_omega_in_axes4_y;
+    v->ucu_nu_1_t_5 = ucu_nd_m1_in_axes4_x*(v->ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x);
+    /* (ucu-phi_4) inertia force of link 4 from its turning about its reference point */
+    v->ucu_phi_4_t = v->ucu_W_2_t_3*m->ucu_h_4_in_spec4_x[i];
+    /* (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points */
+    v->ucu_mu_4_t = m->ucu_J_4_in_spec4_yz[i]*(v->ucu_W_2_t - v->ucu_W_2_t_2);
+    /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ucu_mu_2_t_4 = v->ucu_omega_1_in_axes2_x*v->ucu_omega_1_in_axes2_x;
+    const real ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y;
+    const real ucu_mu_2_t_6 = v->ucu_qd_2*v->ucu_qd_2;
+    v->ucu_mu_2_t_8 = m->ucu_J_2_in_spec2_yz[i]*(ucu_mu_2_t_5 - ucu_mu_2_t_6);
+    v->ucu_mu_2_t_9 = m->ucu_J_2_in_spec2_xy[i]*(ucu_mu_2_t_4 - ucu_mu_2_t_6);
+    v->ucu_mu_2_t_10 = m->ucu_J_2_in_spec2_xz[i]*(ucu_mu_2_t_4 - ucu_mu_2_t_5);
+    /* (ucu-qd_4) */
+    v->ucu_qd_4_2 = v->ucu_omega_in_axes4_z -
+        v->inv_ucu_end_p1_in_axes4_x*(v->ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x +
+        v->ucu_qd_4_t - v->ucu_qd_4_t_2);
+    /* (ucu-omega_4) angular velocity of link 4 */
+    v->ucu_omega_4_in_axes4_z_2 = v->ucu_omega_1_in_axes2_x + v->ucu_qd_4_2;
+    /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+    v->ucu_zeta_4_in_axes4_x_2 = v->ucu_omega_2_in_axes4_y*v->ucu_qd_4_2;
+    /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    const real ucu_beta_4_in_axes4_x_2 = v->ucu_zeta_4_in_axes4_x_2 - v->ucu_zeta_2_t;
+    /* (ucu-nd_m1) */
+    const real ucu_nd_m1_in_axes4_z_2 = -v->ucu_nd_m1_t -
+        v->ucu_end_p1_in_axes4_y*v->ucu_omega_4_in_axes4_z_2;
+    /* (ucu-nu_1) */
+    const real ucu_nu_1_t_7 = v->ucu_nu_1_t_2 +
+        ucu_beta_4_in_axes4_x_2*v->ucu_n_m1_in_axes4_x;
+    const real ucu_nu_1_t_8 = v->ucu_nu_1_t_5 +
+        ucu_nd_m1_in_axes4_z_2*(v->ucu_omega_4_in_axes4_z_2 - v->ucu_omega_in_axes4_z) +
+        v->ucu_nu_1_t_4*(v->ucu_nu_1_t + v->ucu_n_m1_in_axes4_x*v->ucu_omega_4_in_axes4_z_2);
+    v->ucu_nu_1_2 = -ucu_nu_1_t_7 - ucu_nu_1_t_8;
+}
+
+INLINE void stage_ucu_A_V_X(size_t w, size_t j, const real *s, const real *A, values_ucu *v)
+{
+    /* (ucu-S_ddot) acceleration of the connection point */
+    const real B_p_xy = s[9*w + j];
+    const real B_p_xz = s[10*w + j];
+    const real W_p_t_4 = s[11*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real ucu_S_ddot_x = t_ddot_x + B_p_xy*v->ucu_q_y + B_p_xz*v->ucu_q_z -
+        W_p_t_4*v->ucu_q_x;
+    const real B_p_yx = s[12*w + j];
+    const real B_p_yz = s[13*w + j];
+    const real W_p_t_5 = s[14*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real ucu_S_ddot_y = t_ddot_y + B_p_yx*v->ucu_q_x + B_p_yz*v->ucu_q_z -
+        W_p_t_5*v->ucu_q_y;
+    const real B_p_zx = s[15*w + j];
+    const real B_p_zy = s[16*w + j];
+    const real W_p_t_6 = s[17*w + j];
+    const real t_ddot_z = A[2*w + j];
+    const real ucu_S_ddot_z = t_ddot_z + B_p_zx*v->ucu_q_x + B_p_zy*v->ucu_q_y -
+        W_p_t_6*v->ucu_q_z;
+    v->ucu_S_ddot_in_axes4_x = v->axis_x_ucu_axes4_x*ucu_S_ddot_x +
+        v->axis_x_ucu_axes4_y*ucu_S_ddot_y + v->axis_x_ucu_axes4_z*ucu_S_ddot_z;
+    v->ucu_S_ddot_in_axes4_y = v->axis_y_ucu_axes4_x*ucu_S_ddot_x +
+        v->axis_y_ucu_axes4_y*ucu_S_ddot_y + v->axis_y_ucu_axes4_z*ucu_S_ddot_z;
+    v->ucu_S_ddot_in_axes4_z = v->axis_z_ucu_axes4_x*ucu_S_ddot_x +
+        v->axis_z_ucu_axes4_y*ucu_S_ddot_y + v->axis_z_ucu_axes4_z*ucu_S_ddot_z;
+    /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
+    const real ucu_rel_in_axes4_x = v->ucu_S_ddot_in_axes4_x - v->ucu_bias_in_axes4_x;
+    const real ucu_rel_in_axes4_y = v->ucu_S_ddot_in_axes4_y - v->ucu_bias_in_axes4_y;
+    /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real ucu_etad_1 = v->ucu_etad_1_t + v->ucu_nu_1_2;
+    /* (ucu-qdd_1) acceleration of joint 1 */
+    v->ucu_qdd_1 = v->inv_ucu_v_1_in_axes2_z*(v->ucu_e_2_in_axes4_x*ucu_rel_in_axes4_x +
+        v->ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y);
+    /* (ucu-qdd_2) acceleration of joint 2 */
+    v->ucu_qdd_2 = v->inv_ucu_h_4_t_12*(v->ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x -
+        v->ucu_e_2_in_axes4_x*ucu_rel_in_axes4_y + v->ucu_qdd_1*v->ucu_v_1_t_2);
+    /* (ucu-qdd_4) acceleration of joint 4 */
+    v->ucu_qdd_4_t = v->inv_ucu_end_p1_in_axes4_x*(v->ucu_qdd_1*v->ucu_w_4_t + ucu_etad_1 -
+        v->ucu_n_m1_in_axes2_z*v->ucu_qdd_2);
+}
+
+INLINE void stage_ucu_M_dynamics(const prepared *m, size_t i, values_ucu *v)
+{
+    /* (ucu-J_4) inertia tensor of link 4 about the connection point */
+    const real ucu_J_4_in_axes2_xz = m->ucu_J_4_in_spec4_xy[i]*v->ucu_e_2_in_axes4_x +
+        m->ucu_J_4_in_spec4_xz[i]*v->ucu_e_2_in_axes4_y;
+    /* (ucu-w_1) force part of reciprocal wrench 1 */
+    const real ucu_w_1_in_axes4_x = v->inv_ucu_v_1_in_axes2_z*v->ucu_e_2_in_axes4_x;
+    const real ucu_w_1_in_axes4_y = v->inv_ucu_v_1_in_axes2_z*v->ucu_e_2_in_axes4_y;
+    /* (ucu-w_2) force part of reciprocal wrench 2 */
+    const real ucu_w_2_t = v->inv_ucu_h_4_t_12*v->inv_ucu_v_1_in_axes2_z*v->ucu_v_1_t_2;
+    const real ucu_w_2_in_axes4_x = v->inv_ucu_h_4_t_12*v->ucu_e_2_in_axes4_y +
+        v->ucu_e_2_in_axes4_x*ucu_w_2_t;
+    const real ucu_w_2_in_axes4_y = v->ucu_e_2_in_axes4_y*ucu_w_2_t -
+        v->inv_ucu_h_4_t_12*v->ucu_e_2_in_axes4_x;
+    /* (ucu-w_4) force part of reciprocal wrench 4 */
+    const real ucu_w_4_t_2 =
+        v->inv_ucu_end_p1_in_axes4_x*v->inv_ucu_h_4_t_12*v->ucu_n_m1_in_axes2_z;
+    const real ucu_w_4_t_3 =
+        v->inv_ucu_v_1_in_axes2_z*(v->inv_ucu_end_p1_in_axes4_x*v->ucu_w_4_t -
+        v->ucu_v_1_t_2*ucu_w_4_t_2);
+    const real ucu_w_4_in_axes4_x = v->ucu_e_2_in_axes4_y*ucu_w_4_t_2 -
+        v->ucu_e_2_in_axes4_x*ucu_w_4_t_3;
+    const real ucu_w_4_in_axes4_y = -v->ucu_e_2_in_axes4_x*ucu_w_4_t_2 -
+        v->ucu_e_2_in_axes4_y*ucu_w_4_t_3;
     /* (ucu-o_4) moment part of reciprocal wrench 4 */
-    const real ucu_o_4_t = inv_ucu_end_p1_in_axes4_x*ucu_n_m1_in_axes4_x;
+    const real ucu_o_4_t = v->inv_ucu_end_p1_in_axes4_x*v->ucu_n_m1_in_axes4_x;
     /* (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4 */
-    const real ucu_d_alpha_4_in_axes4_zy = ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_y +
+    const real ucu_d_alpha_4_in_axes4_zy = v->ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_y +
         ucu_w_4_in_axes4_y;
     /* (ucu-D_1_4) inertia of joint 4 along joint 1 */
-    const real ucu_D_1_4 = m->ucu_J_4_in_spec4_xx[i]*ucu_e_1_in_axes4_z +
-        m->ucu_J_4_in_spec4_xz[i]*ucu_e_1_in_axes4_y - m->ucu_J_4_in_spec4_xy[i]*ucu_v_1_t;
+    const real ucu_D_1_4 = m->ucu_J_4_in_spec4_xx[i]*v->ucu_e_1_in_axes4_z +
+        m->ucu_J_4_in_spec4_xz[i]*v->ucu_e_1_in_axes4_y -
+        m->ucu_J_4_in_spec4_xy[i]*v->ucu_v_1_t;
     /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
        about the connection point */
-    const real ucu_Jc_2_t = m->ucu_J_4_in_spec4_yz[i]*ucu_e_2_in_axes4_y;
-    const real ucu_Jc_2_t_2 = m->ucu_J_4_in_spec4_yz[i]*ucu_e_2_in_axes4_x;
-    const real ucu_Jc_2_t_3 = m->ucu_J_4_in_spec4_yy[i]*ucu_e_2_in_axes4_y - ucu_Jc_2_t_2;
-    const real ucu_Jc_2_t_4 = m->ucu_J_4_in_spec4_zz[i]*ucu_e_2_in_axes4_x - ucu_Jc_2_t;
-    const real ucu_Jc_2_in_axes2_xy = m->ucu_J_4_in_spec4_xy[i]*ucu_e_2_in_axes4_y -
-        m->ucu_J_2_in_spec2_xz[i] - m->ucu_J_4_in_spec4_xz[i]*ucu_e_2_in_axes4_x;
-    const real ucu_Jc_2_in_axes1_yz = ucu_e_1_in_axes4_z*(m->ucu_J_2_in_spec2_xy[i] +
-        ucu_J_4_in_axes2_xz) - ucu_h_4_t_13*(ucu_Jc_2_t_3*ucu_e_2_in_axes4_x -
-        m->ucu_J_2_in_spec2_yz[i] - ucu_Jc_2_t_4*ucu_e_2_in_axes4_y);
+    const real ucu_Jc_2_t = m->ucu_J_4_in_spec4_yz[i]*v->ucu_e_2_in_axes4_y;
+    const real ucu_Jc_2_t_2 = m->ucu_J_4_in_spec4_yz[i]*v->ucu_e_2_in_axes4_x;
+    const real ucu_Jc_2_t_3 = m->ucu_J_4_in_spec4_yy[i]*v->ucu_e_2_in_axes4_y - ucu_Jc_2_t_2;
+    const real ucu_Jc_2_t_4 = m->ucu_J_4_in_spec4_zz[i]*v->ucu_e_2_in_axes4_x - ucu_Jc_2_t;
+    const real ucu_Jc_2_in_axes2_xy = m->ucu_J_4_in_spec4_xy[i]*v->ucu_e_2_in_axes4_y -
+        m->ucu_J_2_in_spec2_xz[i] - m->ucu_J_4_in_spec4_xz[i]*v->ucu_e_2_in_axes4_x;
+    const real ucu_Jc_2_in_axes1_yz = v->ucu_e_1_in_axes4_z*(m->ucu_J_2_in_spec2_xy[i] +
+        ucu_J_4_in_axes2_xz) - v->ucu_h_4_t_13*(ucu_Jc_2_t_3*v->ucu_e_2_in_axes4_x -
+        m->ucu_J_2_in_spec2_yz[i] - ucu_Jc_2_t_4*v->ucu_e_2_in_axes4_y);
     /* (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
        links' inertia and weight */
     const real ucu_dalpha_Gamma_4_t = m->ucu_J_4_in_spec4_xx[i]*ucu_o_4_t;
     /* (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
        inertia and weight */
-    const real ucu_d_Gamma_4_t = inv_ucu_end_p1_in_axes4_x*m->ucu_J_4_in_spec4_xx[i];
-    const real ucu_d_Gamma_4_t_2 = inv_ucu_h_4_t_12*(ucu_J_4_in_axes2_xz +
-        ucu_d_Gamma_4_t*ucu_n_m1_in_axes2_z);
-    const real ucu_d_Gamma_4_t_3 = inv_ucu_v_1_in_axes2_z*(ucu_D_1_4 -
-        ucu_d_Gamma_4_t*ucu_w_4_t + ucu_d_Gamma_4_t_2*ucu_v_1_t_2);
-    const real ucu_d_Gamma_4_in_axes4_x = ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y -
-        m->ucu_h_4_in_spec4_z[i] + ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_x;
+    const real ucu_d_Gamma_4_t = v->inv_ucu_end_p1_in_axes4_x*m->ucu_J_4_in_spec4_xx[i];
+    const real ucu_d_Gamma_4_t_2 = v->inv_ucu_h_4_t_12*(ucu_J_4_in_axes2_xz +
+        ucu_d_Gamma_4_t*v->ucu_n_m1_in_axes2_z);
+    const real ucu_d_Gamma_4_t_3 = v->inv_ucu_v_1_in_axes2_z*(ucu_D_1_4 -
+        ucu_d_Gamma_4_t*v->ucu_w_4_t + ucu_d_Gamma_4_t_2*v->ucu_v_1_t_2);
+    const real ucu_d_Gamma_4_in_axes4_x = ucu_d_Gamma_4_t_2*v->ucu_e_2_in_axes4_y -
+        m->ucu_h_4_in_spec4_z[i] + ucu_d_Gamma_4_t_3*v->ucu_e_2_in_axes4_x;
     const real ucu_d_Gamma_4_in_axes4_y = m->ucu_h_4_in_spec4_y[i] -
-        ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x + ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y;
+        ucu_d_Gamma_4_t_2*v->ucu_e_2_in_axes4_x + ucu_d_Gamma_4_t_3*v->ucu_e_2_in_axes4_y;
     /* (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
        links' inertia and weight */
     const real ucu_dalpha_Gamma_2_t = ucu_J_4_in_axes2_xz*ucu_o_4_t;
     /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real ucu_d_Gamma_2_t = inv_ucu_end_p1_in_axes4_x*ucu_J_4_in_axes2_xz;
-    const real ucu_d_Gamma_2_t_2 = inv_ucu_h_4_t_12*(m->ucu_J_2_in_spec2_yy[i] +
-        ucu_e_2_in_axes4_x*(m->ucu_J_4_in_spec4_yy[i]*ucu_e_2_in_axes4_x + ucu_Jc_2_t) +
-        ucu_e_2_in_axes4_y*(m->ucu_J_4_in_spec4_zz[i]*ucu_e_2_in_axes4_y + ucu_Jc_2_t_2) +
-        ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z);
-    const real ucu_d_Gamma_2_in_axes2_z = -inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_2_t*ucu_w_4_t -
-        ucu_Jc_2_in_axes1_yz - ucu_d_Gamma_2_t_2*ucu_v_1_t_2);
+    const real ucu_d_Gamma_2_t = v->inv_ucu_end_p1_in_axes4_x*ucu_J_4_in_axes2_xz;
+    const real ucu_d_Gamma_2_t_2 = v->inv_ucu_h_4_t_12*(m->ucu_J_2_in_spec2_yy[i] +
+        v->ucu_e_2_in_axes4_x*(m->ucu_J_4_in_spec4_yy[i]*v->ucu_e_2_in_axes4_x + ucu_Jc_2_t) +
+        v->ucu_e_2_in_axes4_y*(m->ucu_J_4_in_spec4_zz[i]*v->ucu_e_2_in_axes4_y + ucu_Jc_2_t_2)
+        + ucu_d_Gamma_2_t*v->ucu_n_m1_in_axes2_z);
+    const real ucu_d_Gamma_2_in_axes2_z =
+        -v->inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_2_t*v->ucu_w_4_t - ucu_Jc_2_in_axes1_yz -
+        ucu_d_Gamma_2_t_2*v->ucu_v_1_t_2);
     const real ucu_d_Gamma_2_in_axes2_y = m->ucu_h_4_in_spec4_x[i] + ucu_d_Gamma_2_t_2;
-    const real ucu_d_Gamma_2_in_axes4_y = ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_y -
-        ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_x;
+    const real ucu_d_Gamma_2_in_axes4_y = ucu_d_Gamma_2_in_axes2_z*v->ucu_e_2_in_axes4_y -
+        ucu_d_Gamma_2_in_axes2_y*v->ucu_e_2_in_axes4_x;
     /* (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
        links' inertia and weight */
     const real ucu_dalpha_Gamma_1_t = ucu_D_1_4*ucu_o_4_t;
     /* (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real ucu_d_Gamma_1_t = inv_ucu_end_p1_in_axes4_x*ucu_D_1_4;
-    const real ucu_d_Gamma_1_t_2 = inv_ucu_h_4_t_12*(-ucu_Jc_2_in_axes1_yz -
-        ucu_d_Gamma_1_t*ucu_n_m1_in_axes2_z);
-    const real ucu_d_Gamma_1_t_3 = ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xy*ucu_h_4_t_13 -
-        m->ucu_Jc_2_in_axes2_xx[i]*ucu_e_1_in_axes4_z) -
-        ucu_h_4_t_13*(ucu_h_4_t_13*(m->ucu_J_2_in_spec2_zz[i] +
-        ucu_Jc_2_t_3*ucu_e_2_in_axes4_y + ucu_Jc_2_t_4*ucu_e_2_in_axes4_x) -
-        ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z) + ucu_d_Gamma_1_t*ucu_w_4_t +
-        ucu_d_Gamma_1_t_2*ucu_v_1_t_2;
-    const real ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*ucu_h_4_t_13;
-    const real ucu_d_Gamma_1_in_axes1_x = -ucu_e_2_in_axes4_x*m->ucu_h_4_in_spec4_y[i] -
-        ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_z[i] - ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z;
-    const real ucu_d_Gamma_1_in_axes1_y = m->ucu_h_4_in_spec4_x[i]*ucu_h_4_t_13 -
-        ucu_e_1_in_axes4_z*ucu_h_4_in_spec2_z - inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3;
-    const real ucu_d_Gamma_1_in_axes4_z = ucu_d_Gamma_1_in_axes1_x*ucu_h_4_t_13 +
-        ucu_d_Gamma_1_in_axes1_z*ucu_e_1_in_axes4_z;
-    const real ucu_d_Gamma_1_t_4 = ucu_d_Gamma_1_in_axes1_x*ucu_e_1_in_axes4_z -
-        ucu_d_Gamma_1_in_axes1_z*ucu_h_4_t_13;
-    const real ucu_d_Gamma_1_in_axes4_y = ucu_d_Gamma_1_in_axes1_y*ucu_e_2_in_axes4_y -
-        ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_x;
+    const real ucu_d_Gamma_1_t = v->inv_ucu_end_p1_in_axes4_x*ucu_D_1_4;
+    const real ucu_d_Gamma_1_t_2 = v->inv_ucu_h_4_t_12*(-ucu_Jc_2_in_axes1_yz -
+        ucu_d_Gamma_1_t*v->ucu_n_m1_in_axes2_z);
+    const real ucu_d_Gamma_1_t_3 = v->ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xy*v->ucu_h_4_t_13
+        - m->ucu_Jc_2_in_axes2_xx[i]*v->ucu_e_1_in_axes4_z) -
+        v->ucu_h_4_t_13*(v->ucu_h_4_t_13*(m->ucu_J_2_in_spec2_zz[i] +
+        ucu_Jc_2_t_3*v->ucu_e_2_in_axes4_y + ucu_Jc_2_t_4*v->ucu_e_2_in_axes4_x) -
+        ucu_Jc_2_in_axes2_xy*v->ucu_e_1_in_axes4_z) + ucu_d_Gamma_1_t*v->ucu_w_4_t +
+        ucu_d_Gamma_1_t_2*v->ucu_v_1_t_2;
+    const real ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*v->ucu_h_4_t_13;
+    const real ucu_d_Gamma_1_in_axes1_x = -v->ucu_h_4_in_axes1_y -
+        ucu_d_Gamma_1_t_2*v->ucu_e_1_in_axes4_z;
+    const real ucu_d_Gamma_1_in_axes1_y = m->ucu_h_4_in_spec4_x[i]*v->ucu_h_4_t_13 -
+        v->ucu_e_1_in_axes4_z*v->ucu_h_4_in_spec2_z -
+        v->inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3;
+    const real ucu_d_Gamma_1_in_axes4_z = ucu_d_Gamma_1_in_axes1_x*v->ucu_h_4_t_13 +
+        ucu_d_Gamma_1_in_axes1_z*v->ucu_e_1_in_axes4_z;
+    const real ucu_d_Gamma_1_t_4 = ucu_d_Gamma_1_in_axes1_x*v->ucu_e_1_in_axes4_z -
+        ucu_d_Gamma_1_in_axes1_z*v->ucu_h_4_t_13;
+    const real ucu_d_Gamma_1_in_axes4_y = ucu_d_Gamma_1_in_axes1_y*v->ucu_e_2_in_axes4_y -
+        ucu_d_Gamma_1_t_4*v->ucu_e_2_in_axes4_x;
     /* (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
     const real ucu_d_G_in_axes4_xz = ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_x +
-        ucu_h_4_in_spec2_z*ucu_w_2_in_axes4_x;
+        v->ucu_h_4_in_spec2_z*ucu_w_2_in_axes4_x;
     const real ucu_d_G_in_axes4_yz = ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_y +
-        ucu_h_4_in_spec2_z*ucu_w_2_in_axes4_y;
+        v->ucu_h_4_in_spec2_z*ucu_w_2_in_axes4_y;
     /* (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
        balances the leg's inertia and weight along all degrees of freedom */
-    const real ucu_dalpha_G_m1_in_axes4_x = inv_ucu_end_p1_in_axes4_x*ucu_dalpha_Gamma_4_t;
-    const real ucu_dalpha_G_m1_y = axis_x_ucu_axes4_y*ucu_dalpha_G_m1_in_axes4_x -
-        axis_z_ucu_axes4_y*ucu_d_Gamma_4_t;
-    const real ucu_dalpha_G_m1_z = axis_x_ucu_axes4_z*ucu_dalpha_G_m1_in_axes4_x -
-        axis_z_ucu_axes4_z*ucu_d_Gamma_4_t;
+    const real ucu_dalpha_G_m1_in_axes4_x = v->inv_ucu_end_p1_in_axes4_x*ucu_dalpha_Gamma_4_t;
+    const real ucu_dalpha_G_m1_y = v->axis_x_ucu_axes4_y*ucu_dalpha_G_m1_in_axes4_x -
+        v->axis_z_ucu_axes4_y*ucu_d_Gamma_4_t;
+    const real ucu_dalpha_G_m1_z = v->axis_x_ucu_axes4_z*ucu_dalpha_G_m1_in_axes4_x -
+        v->axis_z_ucu_axes4_z*ucu_d_Gamma_4_t;
     /* (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
        the leg's inertia and weight along all degrees of freedom */
-    const real ucu_d_G_m1_in_axes4_x = -inv_ucu_end_p1_in_axes4_x*ucu_d_Gamma_4_in_axes4_x;
-    const real ucu_d_G_m1_in_axes4_y = -inv_ucu_end_p1_in_axes4_x*ucu_d_Gamma_4_in_axes4_y;
-    const real ucu_d_G_m1_x = axis_x_ucu_axes4_x*ucu_d_G_m1_in_axes4_x +
-        axis_y_ucu_axes4_x*ucu_d_G_m1_in_axes4_y;
-    const real ucu_d_G_m1_y = axis_x_ucu_axes4_y*ucu_d_G_m1_in_axes4_x +
-        axis_y_ucu_axes4_y*ucu_d_G_m1_in_axes4_y;
-    const real ucu_d_G_m1_z = axis_x_ucu_axes4_z*ucu_d_G_m1_in_axes4_x +
-        axis_y_ucu_axes4_z*ucu_d_G_m1_in_axes4_y;
+    const real ucu_d_G_m1_in_axes4_x = -v->inv_ucu_end_p1_in_axes4_x*ucu_d_Gamma_4_in_axes4_x;
+    const real ucu_d_G_m1_in_axes4_y = -v->inv_ucu_end_p1_in_axes4_x*ucu_d_Gamma_4_in_axes4_y;
+    const real ucu_d_G_m1_x = v->axis_x_ucu_axes4_x*ucu_d_G_m1_in_axes4_x +
+        v->axis_y_ucu_axes4_x*ucu_d_G_m1_in_axes4_y;
+    const real ucu_d_G_m1_y = v->axis_x_ucu_axes4_y*ucu_d_G_m1_in_axes4_x +
+        v->axis_y_ucu_axes4_y*ucu_d_G_m1_in_axes4_y;
+    const real ucu_d_G_m1_z = v->axis_x_ucu_axes4_z*ucu_d_G_m1_in_axes4_x +
+        v->axis_y_ucu_axes4_z*ucu_d_G_m1_in_axes4_y;
     /* (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
        the leg's inertia and weight along all degrees of freedom */
-    const real ucu_d_G_m_xx = ucu_d_G_m1_x*ucu_n_m1_x;
-    const real ucu_d_G_m_xy = ucu_d_G_m1_y*ucu_n_m1_x;
-    const real ucu_d_G_m_xz = ucu_d_G_m1_z*ucu_n_m1_x;
-    const real ucu_d_G_m_yx = ucu_d_G_m1_x*ucu_n_m1_y;
+    const real ucu_d_G_m_xx = ucu_d_G_m1_x*v->ucu_n_m1_x;
+    const real ucu_d_G_m_xy = ucu_d_G_m1_y*v->ucu_n_m1_x;
+    const real ucu_d_G_m_xz = ucu_d_G_m1_z*v->ucu_n_m1_x;
+    const real ucu_d_G_m_yx = ucu_d_G_m1_x*v->ucu_n_m1_y;
     /* (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
        and without the mass at the connection point */
     const real ucu_dalpha_c_in_axes4_xx = ucu_dalpha_Gamma_1_t*ucu_w_1_in_axes4_x -
@@ -2168,338 +2061,390 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     /* (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
     const real ucu_d_c_in_axes4_xx =
-        m->ucu_h_4_in_spec4_z[i]*(ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_x + ucu_w_4_in_axes4_x)
-        - ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
-        m->ucu_h_4_in_spec4_x[i]*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_x +
-        ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_x) -
-        ucu_w_1_in_axes4_x*(ucu_d_Gamma_1_in_axes1_y*ucu_e_2_in_axes4_x +
-        ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_y) -
-        ucu_w_2_in_axes4_x*(ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_y +
-        ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_x);
+        m->ucu_h_4_in_spec4_z[i]*(v->ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_x +
+        ucu_w_4_in_axes4_x) - ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
+        m->ucu_h_4_in_spec4_x[i]*(v->ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_x +
+        v->ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_x) -
+        ucu_w_1_in_axes4_x*(ucu_d_Gamma_1_in_axes1_y*v->ucu_e_2_in_axes4_x +
+        ucu_d_Gamma_1_t_4*v->ucu_e_2_in_axes4_y) -
+        ucu_w_2_in_axes4_x*(ucu_d_Gamma_2_in_axes2_y*v->ucu_e_2_in_axes4_y +
+        ucu_d_Gamma_2_in_axes2_z*v->ucu_e_2_in_axes4_x);
     const real ucu_d_c_in_axes4_xy = ucu_d_alpha_4_in_axes4_zy*m->ucu_h_4_in_spec4_z[i] -
         ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_x -
         ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_x -
         ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_x -
-        m->ucu_h_4_in_spec4_x[i]*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_y +
-        ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_y);
+        m->ucu_h_4_in_spec4_x[i]*(v->ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_y +
+        v->ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_y);
     const real ucu_d_c_in_axes4_yy =
-        m->ucu_h_4_in_spec4_x[i]*(ucu_e_2_in_axes4_x*ucu_w_2_in_axes4_y -
-        ucu_v_1_t*ucu_w_1_in_axes4_y) - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y -
+        m->ucu_h_4_in_spec4_x[i]*(v->ucu_e_2_in_axes4_x*ucu_w_2_in_axes4_y -
+        v->ucu_v_1_t*ucu_w_1_in_axes4_y) - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y -
         ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_y -
         ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_y -
         ucu_d_alpha_4_in_axes4_zy*m->ucu_h_4_in_spec4_y[i];
     /* (ucu-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real ucu_Q_t = R(0.5)*ucu_d_c_in_axes4_xx;
     const real ucu_Q_t_2 = R(0.5)*ucu_d_c_in_axes4_yy;
-    const real ucu_Q_t_3 = axis_x_ucu_axes4_x*ucu_Q_t - axis_z_ucu_axes4_x*ucu_d_G_in_axes4_xz
-        + axis_y_ucu_axes4_x*ucu_d_c_in_axes4_xy;
-    const real ucu_Q_t_4 = axis_z_ucu_axes4_y*ucu_d_G_in_axes4_xz - axis_x_ucu_axes4_y*ucu_Q_t
-        - axis_y_ucu_axes4_y*ucu_d_c_in_axes4_xy;
-    const real ucu_Q_t_5 = axis_x_ucu_axes4_z*ucu_Q_t - axis_z_ucu_axes4_z*ucu_d_G_in_axes4_xz
-        + axis_y_ucu_axes4_z*ucu_d_c_in_axes4_xy;
-    const real ucu_Q_t_6 = axis_z_ucu_axes4_x*ucu_d_G_in_axes4_yz -
-        axis_y_ucu_axes4_x*ucu_Q_t_2;
-    const real ucu_Q_t_7 = axis_y_ucu_axes4_y*ucu_Q_t_2 -
-        axis_z_ucu_axes4_y*ucu_d_G_in_axes4_yz;
-    const real ucu_Q_t_8 = axis_y_ucu_axes4_z*ucu_Q_t_2 -
-        axis_z_ucu_axes4_z*ucu_d_G_in_axes4_yz;
-    const real ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_6;
-    const real ucu_Q_xx = -2*ucu_Q_t_9;
-    const real ucu_Q_xy = axis_y_ucu_axes4_y*ucu_Q_t_6 - axis_y_ucu_axes4_x*ucu_Q_t_7 +
-        axis_x_ucu_axes4_x*ucu_Q_t_4 - axis_x_ucu_axes4_y*ucu_Q_t_3;
-    const real ucu_Q_xz = axis_y_ucu_axes4_z*ucu_Q_t_6 - axis_y_ucu_axes4_x*ucu_Q_t_8 -
-        axis_x_ucu_axes4_x*ucu_Q_t_5 - axis_x_ucu_axes4_z*ucu_Q_t_3;
-    const real ucu_Q_t_10 = axis_y_ucu_axes4_y*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_4;
-    const real ucu_Q_yy = -2*ucu_Q_t_10;
-    const real ucu_Q_yz = axis_x_ucu_axes4_z*ucu_Q_t_4 - axis_y_ucu_axes4_y*ucu_Q_t_8 -
-        axis_y_ucu_axes4_z*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_5;
-    const real ucu_Q_t_11 = axis_y_ucu_axes4_z*ucu_Q_t_8 + axis_x_ucu_axes4_z*ucu_Q_t_5;
-    const real ucu_Q_zz = -2*ucu_Q_t_11;
+    const real ucu_Q_t_3 = v->axis_x_ucu_axes4_x*ucu_Q_t -
+        v->axis_z_ucu_axes4_x*ucu_d_G_in_axes4_xz + v->axis_y_ucu_axes4_x*ucu_d_c_in_axes4_xy;
+    const real ucu_Q_t_4 = v->axis_z_ucu_axes4_y*ucu_d_G_in_axes4_xz -
+        v->axis_x_ucu_axes4_y*ucu_Q_t - v->axis_y_ucu_axes4_y*ucu_d_c_in_axes4_xy;
+    const real ucu_Q_t_5 = v->axis_x_ucu_axes4_z*ucu_Q_t -
+        v->axis_z_ucu_axes4_z*ucu_d_G_in_axes4_xz + v->axis_y_ucu_axes4_z*ucu_d_c_in_axes4_xy;
+    const real ucu_Q_t_6 = v->axis_z_ucu_axes4_x*ucu_d_G_in_axes4_yz -
+        v->axis_y_ucu_axes4_x*ucu_Q_t_2;
+    const real ucu_Q_t_7 = v->axis_y_ucu_axes4_y*ucu_Q_t_2 -
+        v->axis_z_ucu_axes4_y*ucu_d_G_in_axes4_yz;
+    const real ucu_Q_t_8 = v->axis_y_ucu_axes4_z*ucu_Q_t_2 -
+        v->axis_z_ucu_axes4_z*ucu_d_G_in_axes4_yz;
+    const real ucu_Q_t_9 = v->axis_x_ucu_axes4_x*ucu_Q_t_3 - v->axis_y_ucu_axes4_x*ucu_Q_t_6;
+    v->ucu_Q_xx = -2*ucu_Q_t_9;
+    v->ucu_Q_xy = v->axis_y_ucu_axes4_y*ucu_Q_t_6 - v->axis_y_ucu_axes4_x*ucu_Q_t_7 +
+        v->axis_x_ucu_axes4_x*ucu_Q_t_4 - v->axis_x_ucu_axes4_y*ucu_Q_t_3;
+    v->ucu_Q_xz = v->axis_y_ucu_axes4_z*ucu_Q_t_6 - v->axis_y_ucu_axes4_x*ucu_Q_t_8 -
+        v->axis_x_ucu_axes4_x*ucu_Q_t_5 - v->axis_x_ucu_axes4_z*ucu_Q_t_3;
+    const real ucu_Q_t_10 = v->axis_y_ucu_axes4_y*ucu_Q_t_7 - v->axis_x_ucu_axes4_y*ucu_Q_t_4;
+    v->ucu_Q_yy = -2*ucu_Q_t_10;
+    v->ucu_Q_yz = v->axis_x_ucu_axes4_z*ucu_Q_t_4 - v->axis_y_ucu_axes4_y*ucu_Q_t_8 -
+        v->axis_y_ucu_axes4_z*ucu_Q_t_7 - v->axis_x_ucu_axes4_y*ucu_Q_t_5;
+    const real ucu_Q_t_11 = v->axis_y_ucu_axes4_z*ucu_Q_t_8 + v->axis_x_ucu_axes4_z*ucu_Q_t_5;
+    v->ucu_Q_zz = -2*ucu_Q_t_11;
     /* (M_ta) coupling block of M */
-    const real ucu_M_ta_t = axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xx +
-        axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yx;
-    const real ucu_M_ta_t_2 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xx +
-        axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yx;
-    const real ucu_M_ta_t_3 = axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xx +
-        axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yx;
-    const real ucu_M_ta_t_4 = axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xz +
-        axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yz;
-    const real ucu_M_ta_t_5 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xz +
-        axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yz;
-    const real ucu_M_ta_t_6 = axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xz +
-        axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yz;
-    const real ucu_M_ta_t_7 = -ucu_Q_xy*v->ucu_q_z;
-    const real ucu_M_ta_t_8 = ucu_Q_xz*v->ucu_q_y;
-    const real ucu_M_ta_t_9 = ucu_Q_yz*v->ucu_q_x;
-    const real ucu_M_ta_t_10 = ucu_M_ta_t_7 - axis_x_ucu_axes4_x*ucu_M_ta_t -
-        axis_z_ucu_axes4_x*ucu_M_ta_t_4 + ucu_M_ta_t_8;
-    const real ucu_M_ta_t_11 = ucu_Q_xx*v->ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t -
-        axis_z_ucu_axes4_y*ucu_M_ta_t_4 - ucu_Q_xz*v->ucu_q_x;
-    const real ucu_M_ta_t_12 = ucu_Q_xy*v->ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t -
-        axis_z_ucu_axes4_z*ucu_M_ta_t_4 - ucu_Q_xx*v->ucu_q_y;
-    const real ucu_M_ta_t_13 = ucu_Q_yz*v->ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_2 -
-        axis_z_ucu_axes4_x*ucu_M_ta_t_5 - ucu_Q_yy*v->ucu_q_z;
-    const real ucu_M_ta_t_14 = axis_x_ucu_axes4_y*ucu_M_ta_t_2 +
-        axis_z_ucu_axes4_y*ucu_M_ta_t_5 + ucu_M_ta_t_7 + ucu_M_ta_t_9;
-    const real ucu_M_ta_t_15 = ucu_Q_yy*v->ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t_2 -
-        axis_z_ucu_axes4_z*ucu_M_ta_t_5 - ucu_Q_xy*v->ucu_q_y;
-    const real ucu_M_ta_t_16 = ucu_Q_zz*v->ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_3 -
-        axis_z_ucu_axes4_x*ucu_M_ta_t_6 - ucu_Q_yz*v->ucu_q_z;
-    const real ucu_M_ta_t_17 = ucu_Q_xz*v->ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t_3 -
-        axis_z_ucu_axes4_y*ucu_M_ta_t_6 - ucu_Q_zz*v->ucu_q_x;
-    const real ucu_M_ta_t_18 = ucu_M_ta_t_9 - axis_x_ucu_axes4_z*ucu_M_ta_t_3 -
-        axis_z_ucu_axes4_z*ucu_M_ta_t_6 - ucu_M_ta_t_8;
+    const real ucu_M_ta_t = v->axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xx +
+        v->axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yx;
+    const real ucu_M_ta_t_2 = v->axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xx +
+        v->axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yx;
+    const real ucu_M_ta_t_3 = v->axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xx +
+        v->axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yx;
+    const real ucu_M_ta_t_4 = v->axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xz +
+        v->axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yz;
+    const real ucu_M_ta_t_5 = v->axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xz +
+        v->axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yz;
+    const real ucu_M_ta_t_6 = v->axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xz +
+        v->axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yz;
+    const real ucu_M_ta_t_7 = -v->ucu_Q_xy*v->ucu_q_z;
+    const real ucu_M_ta_t_8 = v->ucu_Q_xz*v->ucu_q_y;
+    const real ucu_M_ta_t_9 = v->ucu_Q_yz*v->ucu_q_x;
+    v->ucu_M_ta_t_10 = ucu_M_ta_t_7 - v->axis_x_ucu_axes4_x*ucu_M_ta_t -
+        v->axis_z_ucu_axes4_x*ucu_M_ta_t_4 + ucu_M_ta_t_8;
+    v->ucu_M_ta_t_11 = v->ucu_Q_xx*v->ucu_q_z - v->axis_x_ucu_axes4_y*ucu_M_ta_t -
+        v->axis_z_ucu_axes4_y*ucu_M_ta_t_4 - v->ucu_Q_xz*v->ucu_q_x;
+    v->ucu_M_ta_t_12 = v->ucu_Q_xy*v->ucu_q_x - v->axis_x_ucu_axes4_z*ucu_M_ta_t -
+        v->axis_z_ucu_axes4_z*ucu_M_ta_t_4 - v->ucu_Q_xx*v->ucu_q_y;
+    v->ucu_M_ta_t_13 = v->ucu_Q_yz*v->ucu_q_y - v->axis_x_ucu_axes4_x*ucu_M_ta_t_2 -
+        v->axis_z_ucu_axes4_x*ucu_M_ta_t_5 - v->ucu_Q_yy*v->ucu_q_z;
+    v->ucu_M_ta_t_14 = v->axis_x_ucu_axes4_y*ucu_M_ta_t_2 + v->axis_z_ucu_axes4_y*ucu_M_ta_t_5
+        + ucu_M_ta_t_7 + ucu_M_ta_t_9;
+    v->ucu_M_ta_t_15 = v->ucu_Q_yy*v->ucu_q_x - v->axis_x_ucu_axes4_z*ucu_M_ta_t_2 -
+        v->axis_z_ucu_axes4_z*ucu_M_ta_t_5 - v->ucu_Q_xy*v->ucu_q_y;
+    v->ucu_M_ta_t_16 = v->ucu_Q_zz*v->ucu_q_y - v->axis_x_ucu_axes4_x*ucu_M_ta_t_3 -
+        v->axis_z_ucu_axes4_x*ucu_M_ta_t_6 - v->ucu_Q_yz*v->ucu_q_z;
+    v->ucu_M_ta_t_17 = v->ucu_Q_xz*v->ucu_q_z - v->axis_x_ucu_axes4_y*ucu_M_ta_t_3 -
+        v->axis_z_ucu_axes4_y*ucu_M_ta_t_6 - v->ucu_Q_zz*v->ucu_q_x;
+    v->ucu_M_ta_t_18 = ucu_M_ta_t_9 - v->axis_x_ucu_axes4_z*ucu_M_ta_t_3 -
+        v->axis_z_ucu_axes4_z*ucu_M_ta_t_6 - ucu_M_ta_t_8;
     /* (M_aa) rotational block of M */
-    const real ucu_M_aa_t = ucu_n_m1_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_in_axes4_x -
-        axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) + ucu_d_G_m_xz*v->ucu_q_y -
-        ucu_d_G_m_xy*v->ucu_q_z + ucu_M_ta_t_16*v->ucu_q_y - ucu_M_ta_t_13*v->ucu_q_z;
-    const real ucu_M_aa_t_2 = ucu_dalpha_G_m1_y*ucu_n_m1_x + ucu_d_G_m_xx*v->ucu_q_z -
-        ucu_d_G_m_xz*v->ucu_q_x + ucu_M_ta_t_17*v->ucu_q_y + ucu_M_ta_t_14*v->ucu_q_z;
-    const real ucu_M_aa_t_3 = ucu_dalpha_G_m1_z*ucu_n_m1_x + ucu_d_G_m_xy*v->ucu_q_x -
-        ucu_d_G_m_xx*v->ucu_q_y - ucu_M_ta_t_15*v->ucu_q_z + ucu_M_ta_t_18*v->ucu_q_y;
-    const real ucu_M_aa_t_4 = ucu_dalpha_G_m1_y*ucu_n_m1_y + ucu_d_G_m_yx*v->ucu_q_z -
-        ucu_d_G_m1_z*ucu_n_m1_y*v->ucu_q_x + ucu_M_ta_t_11*v->ucu_q_z -
-        ucu_M_ta_t_17*v->ucu_q_x;
-    const real ucu_M_aa_t_5 = ucu_dalpha_G_m1_z*ucu_n_m1_y +
-        ucu_d_G_m1_y*ucu_n_m1_y*v->ucu_q_x - ucu_d_G_m_yx*v->ucu_q_y +
-        ucu_M_ta_t_12*v->ucu_q_z - ucu_M_ta_t_18*v->ucu_q_x;
-    const real ucu_M_aa_t_6 = ucu_dalpha_G_m1_z*ucu_n_m1_z +
-        ucu_d_G_m1_y*ucu_n_m1_z*v->ucu_q_x - ucu_d_G_m1_x*ucu_n_m1_z*v->ucu_q_y +
-        ucu_M_ta_t_15*v->ucu_q_x - ucu_M_ta_t_12*v->ucu_q_y;
-    v->ucu_h_4_t_7 = ucu_h_4_t_7;
-    v->ucu_h_4_t_9 = ucu_h_4_t_9;
-    v->ucu_h_4_t_10 = ucu_h_4_t_10;
-    v->ucu_h_4_t_11 = ucu_h_4_t_11;
-    v->ucu_h_4_t_12 = ucu_h_4_t_12;
-    v->inv_ucu_h_4_t_12 = inv_ucu_h_4_t_12;
-    v->ucu_h_4_t_13 = ucu_h_4_t_13;
-    v->ucu_e_1_in_axes4_z = ucu_e_1_in_axes4_z;
-    v->ucu_end_p1_in_turn4_x = ucu_end_p1_in_turn4_x;
-    v->ucu_h_4_t_18 = ucu_h_4_t_18;
-    v->ucu_h_4_t_19 = ucu_h_4_t_19;
-    v->ucu_e_2_in_axes4_x = ucu_e_2_in_axes4_x;
-    v->ucu_e_2_in_axes4_y = ucu_e_2_in_axes4_y;
-    v->ucu_v_1_in_axes2_z = ucu_v_1_in_axes2_z;
-    v->ucu_v_1_t_2 = ucu_v_1_t_2;
-    v->ucu_n_m1_in_axes4_x = ucu_n_m1_in_axes4_x;
-    v->axis_z_ucu_axes4_x = axis_z_ucu_axes4_x;
-    v->axis_z_ucu_axes4_y = axis_z_ucu_axes4_y;
-    v->axis_z_ucu_axes4_z = axis_z_ucu_axes4_z;
-    v->axis_y_ucu_axes4_x = axis_y_ucu_axes4_x;
-    v->axis_y_ucu_axes4_y = axis_y_ucu_axes4_y;
-    v->axis_y_ucu_axes4_z = axis_y_ucu_axes4_z;
-    v->axis_x_ucu_axes4_x = axis_x_ucu_axes4_x;
-    v->axis_x_ucu_axes4_y = axis_x_ucu_axes4_y;
-    v->axis_x_ucu_axes4_z = axis_x_ucu_axes4_z;
-    v->ucu_end_p1_in_axes4_x = ucu_end_p1_in_axes4_x;
-    v->ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes2_z;
-    v->ucu_n_m1_x = ucu_n_m1_x;
-    v->ucu_n_m1_y = ucu_n_m1_y;
-    v->ucu_n_m1_z = ucu_n_m1_z;
-    v->inv_ucu_v_1_in_axes2_z = inv_ucu_v_1_in_axes2_z;
-    v->ucu_w_4_t = ucu_w_4_t;
-    v->inv_ucu_end_p1_in_axes4_x = inv_ucu_end_p1_in_axes4_x;
-    v->ucu_Q_xx = ucu_Q_xx;
-    v->ucu_Q_xy = ucu_Q_xy;
-    v->ucu_Q_xz = ucu_Q_xz;
-    v->ucu_Q_yy = ucu_Q_yy;
-    v->ucu_Q_yz = ucu_Q_yz;
-    v->ucu_Q_zz = ucu_Q_zz;
-    v->ucu_M_ta_t_10 = ucu_M_ta_t_10;
-    v->ucu_M_ta_t_11 = ucu_M_ta_t_11;
-    v->ucu_M_ta_t_12 = ucu_M_ta_t_12;
-    v->ucu_M_ta_t_13 = ucu_M_ta_t_13;
-    v->ucu_M_ta_t_14 = ucu_M_ta_t_14;
-    v->ucu_M_ta_t_15 = ucu_M_ta_t_15;
-    v->ucu_M_ta_t_16 = ucu_M_ta_t_16;
-    v->ucu_M_ta_t_17 = ucu_M_ta_t_17;
-    v->ucu_M_ta_t_18 = ucu_M_ta_t_18;
-    v->ucu_M_aa_t = ucu_M_aa_t;
-    v->ucu_M_aa_t_2 = ucu_M_aa_t_2;
-    v->ucu_M_aa_t_3 = ucu_M_aa_t_3;
-    v->ucu_M_aa_t_4 = ucu_M_aa_t_4;
-    v->ucu_M_aa_t_5 = ucu_M_aa_t_5;
-    v->ucu_M_aa_t_6 = ucu_M_aa_t_6;
+    v->ucu_M_aa_t = v->ucu_n_m1_x*(v->axis_x_ucu_axes4_x*ucu_dalpha_G_m1_in_axes4_x -
+        v->axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) + ucu_d_G_m_xz*v->ucu_q_y -
+        ucu_d_G_m_xy*v->ucu_q_z + v->ucu_M_ta_t_16*v->ucu_q_y - v->ucu_M_ta_t_13*v->ucu_q_z;
+    v->ucu_M_aa_t_2 = ucu_dalpha_G_m1_y*v->ucu_n_m1_x + ucu_d_G_m_xx*v->ucu_q_z -
+        ucu_d_G_m_xz*v->ucu_q_x + v->ucu_M_ta_t_17*v->ucu_q_y + v->ucu_M_ta_t_14*v->ucu_q_z;
+    v->ucu_M_aa_t_3 = ucu_dalpha_G_m1_z*v->ucu_n_m1_x + ucu_d_G_m_xy*v->ucu_q_x -
+        ucu_d_G_m_xx*v->ucu_q_y - v->ucu_M_ta_t_15*v->ucu_q_z + v->ucu_M_ta_t_18*v->ucu_q_y;
+    v->ucu_M_aa_t_4 = ucu_dalpha_G_m1_y*v->ucu_n_m1_y + ucu_d_G_m_yx*v->ucu_q_z -
+        ucu_d_G_m1_z*v->ucu_n_m1_y*v->ucu_q_x + v->ucu_M_ta_t_11*v->ucu_q_z -
+        v->ucu_M_ta_t_17*v->ucu_q_x;
+    v->ucu_M_aa_t_5 = ucu_dalpha_G_m1_z*v->ucu_n_m1_y + ucu_d_G_m1_y*v->ucu_n_m1_y*v->ucu_q_x
+        - ucu_d_G_m_yx*v->ucu_q_y + v->ucu_M_ta_t_12*v->ucu_q_z - v->ucu_M_ta_t_18*v->ucu_q_x;
+    v->ucu_M_aa_t_6 = ucu_dalpha_G_m1_z*v->ucu_n_m1_z + ucu_d_G_m1_y*v->ucu_n_m1_z*v->ucu_q_x
+        - ucu_d_G_m1_x*v->ucu_n_m1_z*v->ucu_q_y + v->ucu_M_ta_t_15*v->ucu_q_x -
+        v->ucu_M_ta_t_12*v->ucu_q_y;
 }
 
-INLINE void stage_ucu_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_ucu *v)
+INLINE void stage_ucu_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_ucu *v)
 {
-    /* (ucu-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real ucu_S_x = t_x - m->ucu_base_point_x[i] + R_xy*m->ucu_platform_point_y[i] +
-        R_xz*m->ucu_platform_point_z[i] + R_xx*m->ucu_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real ucu_S_y = t_y - m->ucu_base_point_y[i] + R_yx*m->ucu_platform_point_x[i] +
-        R_yz*m->ucu_platform_point_z[i] + R_yy*m->ucu_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real ucu_S_z = t_z - m->ucu_base_point_z[i] + R_zx*m->ucu_platform_point_x[i] +
-        R_zy*m->ucu_platform_point_y[i] + R_zz*m->ucu_platform_point_z[i];
-    const real ucu_S_in_turn1_x = ucu_S_x*m->ucu_base_frame_xx[i] +
-        ucu_S_y*m->ucu_base_frame_yx[i] + ucu_S_z*m->ucu_base_frame_zx[i];
-    const real ucu_S_in_turn1_y = ucu_S_x*m->ucu_base_frame_xy[i] +
-        ucu_S_y*m->ucu_base_frame_yy[i] + ucu_S_z*m->ucu_base_frame_zy[i];
-    const real ucu_S_in_turn1_z = ucu_S_x*m->ucu_base_frame_xz[i] +
-        ucu_S_y*m->ucu_base_frame_yz[i] + ucu_S_z*m->ucu_base_frame_zz[i];
-    /* (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x +
-        ucu_S_in_turn1_y*ucu_S_in_turn1_y;
-    const real ucu_root_1 = m->ucu_branch_1[i]*root(ucu_root_1_t);
-    /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_ucu_root_1 = 1/ucu_root_1;
-    const real ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x;
-    /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-    const real ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y;
-    /* (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch */
-    const real ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t;
-    const real ucu_root_2 = m->ucu_branch_2[i]*root(ucu_root_2_t);
-    /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_ucu_root_2 = 1/ucu_root_2;
-    const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
-    /* (ucu-q_2) displacement of joint 2 */
-    const real ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z;
-    /* (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch */
-    const real ucu_end_p1_in_turn4_x = ucu_c_1*v->ucu_root_4_t_2 - v->ucu_root_4_t*ucu_s_1;
-    const real ucu_root_4_t_4 = ucu_e_1_in_axes4_z*(ucu_c_1*v->ucu_root_4_t +
-        v->ucu_root_4_t_2*ucu_s_1) - ucu_c_2*v->ucu_root_4_t_3;
-    const real ucu_root_4_t_5 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x +
-        ucu_root_4_t_4*ucu_root_4_t_4;
-    const real ucu_root_4 = m->ucu_branch_4[i]*root(ucu_root_4_t_5);
-    /* (ucu-q_4) displacement of joint 4 */
-    const real inv_ucu_root_4 = 1/ucu_root_4;
-    v->ucu_root_1_t = ucu_root_1_t;
-    v->ucu_c_1 = ucu_c_1;
-    v->ucu_s_1 = ucu_s_1;
-    v->ucu_root_2_t = ucu_root_2_t;
-    v->ucu_root_2 = ucu_root_2;
-    v->ucu_c_2 = ucu_c_2;
-    v->ucu_e_1_in_axes4_z = ucu_e_1_in_axes4_z;
-    v->ucu_end_p1_in_turn4_x = ucu_end_p1_in_turn4_x;
-    v->ucu_root_4_t_4 = ucu_root_4_t_4;
-    v->ucu_root_4_t_5 = ucu_root_4_t_5;
-    v->inv_ucu_root_4 = inv_ucu_root_4;
+    /* (ucu-eta_1) rate at which the joints turn along moment direction 1 */
+    const real omega_x = V[3*w + j];
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real ucu_eta_1 = omega_x*v->ucu_n_m1_x + omega_y*v->ucu_n_m1_y +
+        omega_z*v->ucu_n_m1_z;
+    /* (ucu-qd_4) rate of joint 4 */
+    const real ucu_qd_4 = -v->inv_ucu_end_p1_in_axes4_x*(ucu_eta_1 + v->ucu_qd_4_t -
+        v->ucu_qd_4_t_2);
+    /* (ucu-omega_4) angular velocity of link 4 */
+    const real ucu_omega_4_in_axes4_z = v->ucu_omega_1_in_axes2_x + ucu_qd_4;
+    /* (ucu-W_4) centripetal tensor of link 4 */
+    const real ucu_W_4_in_axes4_xz = v->ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z;
+    const real ucu_W_4_in_axes4_yz = v->ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z;
+    /* (ucu-u_1) centripetal acceleration of the connection point */
+    const real ucu_u_1_x = omega_y*v->ucu_S_dot_t_3 - omega_z*v->ucu_S_dot_t_2;
+    const real ucu_u_1_y = omega_z*v->ucu_S_dot_t - omega_x*v->ucu_S_dot_t_3;
+    const real ucu_u_1_z = omega_x*v->ucu_S_dot_t_2 - omega_y*v->ucu_S_dot_t;
+    const real ucu_u_1_in_axes4_x = v->axis_x_ucu_axes4_x*ucu_u_1_x +
+        v->axis_x_ucu_axes4_y*ucu_u_1_y + v->axis_x_ucu_axes4_z*ucu_u_1_z;
+    const real ucu_u_1_in_axes4_y = v->axis_y_ucu_axes4_x*ucu_u_1_x +
+        v->axis_y_ucu_axes4_y*ucu_u_1_y + v->axis_y_ucu_axes4_z*ucu_u_1_z;
+    /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+    const real ucu_zeta_4_in_axes4_x = v->ucu_omega_2_in_axes4_y*ucu_qd_4;
+    /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - v->ucu_zeta_2_t;
+    /* (ucu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - v->ucu_bias_in_axes4_x;
+    const real ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - v->ucu_bias_in_axes4_y;
+    /* (ucu-nd_m1) rate of moment direction 1 */
+    const real ucu_nd_m1_in_axes4_z = -v->ucu_nd_m1_t -
+        v->ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z;
+    /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real ucu_nu_1_t_3 = v->ucu_nu_1_t_2 + ucu_beta_4_in_axes4_x*v->ucu_n_m1_in_axes4_x;
+    const real ucu_nu_1_t_6 = v->ucu_nu_1_t_5 + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
+        v->ucu_omega_in_axes4_z) + v->ucu_nu_1_t_4*(v->ucu_nu_1_t +
+        v->ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
+    const real ucu_nu_1 = -ucu_nu_1_t_3 - ucu_nu_1_t_6;
+    /* (ucu-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real ucu_qdd_1_o =
+        v->inv_ucu_v_1_in_axes2_z*(v->ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
+        v->ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y);
+    /* (ucu-qdd_2_o) remainder of: acceleration of joint 2 */
+    const real ucu_qdd_2_o = v->inv_ucu_h_4_t_12*(v->ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x -
+        v->ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y + ucu_qdd_1_o*v->ucu_v_1_t_2);
+    /* (ucu-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real ucu_alpha_1_o_in_axes2_x = v->ucu_e_1_in_axes4_z*ucu_qdd_1_o;
+    const real ucu_alpha_1_o_in_axes2_y = -v->ucu_h_4_t_13*ucu_qdd_1_o;
+    /* (ucu-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real ucu_alpha_2_o_in_axes2_x = v->ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x;
+    const real ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - v->ucu_W_2_in_axes2_xz;
+    /* (ucu-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real ucu_B_2_o_in_axes2_xy = v->ucu_W_2_in_axes2_xy - ucu_qdd_2_o;
+    const real ucu_B_2_o_in_axes2_yx = v->ucu_W_2_in_axes2_xy + ucu_qdd_2_o;
+    const real ucu_B_2_o_in_axes2_zx = v->ucu_W_2_in_axes2_xz - ucu_alpha_2_o_in_axes2_y;
+    const real ucu_B_2_o_in_axes2_zy = v->ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x;
+    /* (ucu-alpha_4_o) remainder of: angular acceleration of link 4 */
+    const real ucu_alpha_4_o_in_axes4_x = ucu_zeta_4_in_axes4_x +
+        ucu_alpha_2_o_in_axes2_y*v->ucu_e_2_in_axes4_y + v->ucu_e_2_in_axes4_x*ucu_qdd_2_o;
+    const real ucu_alpha_4_o_in_axes4_y = v->ucu_e_2_in_axes4_y*ucu_qdd_2_o -
+        v->ucu_omega_2_in_axes4_x*ucu_qd_4 - ucu_alpha_2_o_in_axes2_y*v->ucu_e_2_in_axes4_x;
+    const real ucu_alpha_4_o_in_axes4_z = ucu_alpha_2_o_in_axes2_x -
+        v->inv_ucu_end_p1_in_axes4_x*(ucu_qdd_1_o*v->ucu_w_4_t + ucu_nu_1 -
+        v->ucu_n_m1_in_axes2_z*ucu_qdd_2_o);
+    /* (ucu-B_4_o) remainder of the acceleration tensor of link 4 */
+    const real ucu_B_4_o_in_axes4_xy = v->ucu_W_2_in_axes4_xy - ucu_alpha_4_o_in_axes4_z;
+    const real ucu_B_4_o_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_o_in_axes4_y;
+    const real ucu_B_4_o_in_axes4_yx = v->ucu_W_2_in_axes4_xy + ucu_alpha_4_o_in_axes4_z;
+    const real ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x;
+    const real ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y;
+    const real ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x;
+    /* (ucu-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
+    const real ucu_acc_4_o_in_axes4_x = ucu_u_1_in_axes4_x - v->ucu_g_in_axes4_x;
+    const real ucu_acc_4_o_in_axes4_y = ucu_u_1_in_axes4_y - v->ucu_g_in_axes4_y;
+    const real ucu_acc_4_o_in_axes4_z = v->axis_z_ucu_axes4_x*ucu_u_1_x +
+        v->axis_z_ucu_axes4_y*ucu_u_1_y + v->axis_z_ucu_axes4_z*ucu_u_1_z -
+        v->ucu_g_in_axes4_z;
+    /* (ucu-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
+       */
+    const real ucu_phi_4_o_in_axes4_z = ucu_B_4_o_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] -
+        v->ucu_phi_4_t + ucu_B_4_o_in_axes4_zy*m->ucu_h_4_in_spec4_z[i];
+    /* (ucu-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
+       reference points */
+    const real ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
+    const real ucu_mu_4_o_in_axes4_x = ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
+        ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_x[i] +
+        m->ucu_J_4_in_spec4_xz[i]*(v->ucu_W_2_t_2 - ucu_mu_4_o_t) +
+        ucu_B_4_o_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i] +
+        ucu_B_4_o_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] -
+        ucu_B_4_o_in_axes4_yz*m->ucu_Sigma_4_in_axes4_zz[i] -
+        ucu_B_4_o_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i];
+    const real ucu_mu_4_o_in_axes4_y = ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
+        ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_y[i] -
+        m->ucu_J_4_in_spec4_xy[i]*(v->ucu_W_2_t - ucu_mu_4_o_t) +
+        ucu_B_4_o_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
+        ucu_B_4_o_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] -
+        ucu_B_4_o_in_axes4_xy*m->ucu_J_4_in_spec4_xz[i] -
+        ucu_B_4_o_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i];
+    const real ucu_mu_4_o_in_axes4_z = ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
+        ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_z[i] + v->ucu_mu_4_t +
+        ucu_B_4_o_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] +
+        ucu_B_4_o_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] -
+        ucu_B_4_o_in_axes4_xy*m->ucu_Sigma_4_in_axes4_yy[i] -
+        ucu_B_4_o_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i];
+    /* (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real ucu_mu_2_o_in_axes2_x = v->ucu_mu_2_t_11 - v->ucu_mu_2_t_8 +
+        m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_x +
+        ucu_B_2_o_in_axes2_yx*m->ucu_J_2_in_spec2_xy[i] +
+        ucu_B_2_o_in_axes2_zx*m->ucu_J_2_in_spec2_xz[i] +
+        ucu_B_2_o_in_axes2_zy*m->ucu_Sigma_2_in_axes2_yy[i];
+    const real ucu_mu_2_o_in_axes2_y = m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_y
+        - v->ucu_mu_2_t_12 - v->ucu_mu_2_t_9 + ucu_B_2_o_in_axes2_xy*m->ucu_J_2_in_spec2_yz[i]
+        - ucu_B_2_o_in_axes2_zx*m->ucu_Sigma_2_in_axes2_xx[i] -
+        ucu_B_2_o_in_axes2_zy*m->ucu_J_2_in_spec2_xz[i];
+    const real ucu_mu_2_o_in_axes2_z = m->ucu_J_2_in_spec2_xy[i]*ucu_alpha_1_o_in_axes2_x -
+        v->ucu_mu_2_t_13 - v->ucu_mu_2_t_10 -
+        m->ucu_J_2_in_spec2_yz[i]*ucu_alpha_1_o_in_axes2_y +
+        ucu_B_2_o_in_axes2_yx*m->ucu_Sigma_2_in_axes2_xx[i] -
+        ucu_B_2_o_in_axes2_xy*m->ucu_Sigma_2_in_axes2_yy[i];
+    /* (ucu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z;
+    const real ucu_N_2_o_in_axes2_y = ucu_mu_2_o_in_axes2_y +
+        v->ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x -
+        v->ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_y;
+    const real ucu_N_2_o_in_axes2_z = ucu_mu_2_o_in_axes2_z +
+        v->ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_x +
+        v->ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y;
+    /* (ucu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real ucu_G_m1_o_t = v->inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z;
+    /* (ucu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real ucu_c_o_t = v->inv_ucu_h_4_t_12*(ucu_G_m1_o_t*v->ucu_n_m1_in_axes2_z +
+        ucu_N_2_o_in_axes2_z);
+    const real ucu_c_o_t_2 = v->inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*v->ucu_w_4_t -
+        ucu_N_2_o_in_axes2_x*v->ucu_e_1_in_axes4_z + ucu_N_2_o_in_axes2_y*v->ucu_h_4_t_13 -
+        ucu_c_o_t*v->ucu_v_1_t_2);
+    const real ucu_c_o_in_axes4_x = m->ucu_h_4_in_spec4_y[i]*(v->ucu_W_2_t_2 + ucu_mu_4_o_t) -
+        ucu_B_4_o_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
+        ucu_B_4_o_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_o_t*v->ucu_e_2_in_axes4_y +
+        ucu_c_o_t_2*v->ucu_e_2_in_axes4_x;
+    const real ucu_c_o_in_axes4_y = m->ucu_h_4_in_spec4_z[i]*(v->ucu_W_2_t + ucu_mu_4_o_t) -
+        ucu_B_4_o_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] -
+        ucu_B_4_o_in_axes4_yz*m->ucu_h_4_in_spec4_x[i] + ucu_c_o_t*v->ucu_e_2_in_axes4_x +
+        ucu_c_o_t_2*v->ucu_e_2_in_axes4_y;
+    /* (ucu-c_m_o) remainder of: moment of the leg on the platform without actuation */
+    const real ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*v->ucu_n_m1_in_axes4_x;
+    /* (ucu-U) velocity and gravity terms of the leg force */
+    v->ucu_U_x = v->axis_z_ucu_axes4_x*ucu_phi_4_o_in_axes4_z -
+        v->axis_x_ucu_axes4_x*ucu_c_o_in_axes4_x - v->axis_y_ucu_axes4_x*ucu_c_o_in_axes4_y;
+    v->ucu_U_y = v->axis_z_ucu_axes4_y*ucu_phi_4_o_in_axes4_z -
+        v->axis_x_ucu_axes4_y*ucu_c_o_in_axes4_x - v->axis_y_ucu_axes4_y*ucu_c_o_in_axes4_y;
+    v->ucu_U_z = v->axis_z_ucu_axes4_z*ucu_phi_4_o_in_axes4_z -
+        v->axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x - v->axis_y_ucu_axes4_z*ucu_c_o_in_axes4_y;
+    /* (Z_a) rotational part of Z */
+    v->ucu_Z_a_t = v->axis_z_ucu_axes4_x*ucu_mu_4_o_in_axes4_z -
+        v->axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x + v->ucu_U_z*v->ucu_q_y -
+        v->ucu_U_y*v->ucu_q_z;
+    v->ucu_Z_a_t_2 = v->axis_z_ucu_axes4_y*ucu_mu_4_o_in_axes4_z -
+        v->axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x + v->ucu_U_x*v->ucu_q_z -
+        v->ucu_U_z*v->ucu_q_x;
+    v->ucu_Z_a_t_3 = v->axis_z_ucu_axes4_z*ucu_mu_4_o_in_axes4_z -
+        v->axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x + v->ucu_U_y*v->ucu_q_x -
+        v->ucu_U_x*v->ucu_q_y;
 }
 
 INLINE void stage_ucu_legs_required(const prepared *m, size_t i, values_ucu *v)
 {
     /* (ucu-W_4) centripetal tensor of link 4 */
-    const real ucu_W_4_in_axes4_xz = v->ucu_omega_2_in_axes4_x*v->ucu_omega_4_in_axes4_z;
-    const real ucu_W_4_in_axes4_yz = v->ucu_omega_2_in_axes4_y*v->ucu_omega_4_in_axes4_z;
-    /* (ucu-S_ddot) acceleration of the connection point */
-    const real ucu_S_ddot_in_axes4_x = v->axis_x_ucu_axes4_x*v->ucu_S_ddot_x +
-        v->axis_x_ucu_axes4_y*v->ucu_S_ddot_y + v->axis_x_ucu_axes4_z*v->ucu_S_ddot_z;
-    const real ucu_S_ddot_in_axes4_y = v->axis_y_ucu_axes4_x*v->ucu_S_ddot_x +
-        v->axis_y_ucu_axes4_y*v->ucu_S_ddot_y + v->axis_y_ucu_axes4_z*v->ucu_S_ddot_z;
-    /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-    const real ucu_zeta_4_in_axes4_x = v->ucu_omega_2_in_axes4_y*v->ucu_qd_4;
-    /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
-    const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - v->ucu_zeta_2_t;
-    /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
-    const real ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - v->ucu_bias_in_axes4_x;
-    const real ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - v->ucu_bias_in_axes4_y;
-    /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*v->ucu_n_m1_in_axes4_x -
-        v->ucu_W_2_in_axes2_yz*v->ucu_end_p1_in_axes4_x;
-    const real ucu_nu_1 = -ucu_nu_1_t - v->ucu_nu_1_t_2;
-    /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real ucu_etad_1 = v->ucu_etad_1_t + ucu_nu_1;
-    /* (ucu-qdd_1) acceleration of joint 1 */
-    const real ucu_qdd_1 = v->inv_ucu_v_1_in_axes2_z*(v->ucu_c_4*ucu_rel_in_axes4_x +
-        v->ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y);
-    /* (ucu-qdd_2) acceleration of joint 2 */
-    const real ucu_qdd_2 = v->inv_ucu_root_2*(v->ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x -
-        v->ucu_c_4*ucu_rel_in_axes4_y + ucu_qdd_1*v->ucu_v_1_t_2);
+    const real ucu_W_4_in_axes4_xz_2 = v->ucu_omega_2_in_axes4_x*v->ucu_omega_4_in_axes4_z_2;
+    const real ucu_W_4_in_axes4_yz_2 = v->ucu_omega_2_in_axes4_y*v->ucu_omega_4_in_axes4_z_2;
     /* (ucu-alpha_1) angular acceleration of link 1 */
-    const real ucu_alpha_1_in_axes2_x = v->ucu_e_1_in_axes4_z*ucu_qdd_1;
-    const real ucu_alpha_1_in_axes2_y = -v->ucu_c_2*ucu_qdd_1;
+    const real ucu_alpha_1_in_axes2_x = v->ucu_e_1_in_axes4_z*v->ucu_qdd_1;
+    const real ucu_alpha_1_in_axes2_y = -v->ucu_h_4_t_13*v->ucu_qdd_1;
     /* (ucu-alpha_2) angular acceleration of link 2 */
     const real ucu_alpha_2_in_axes2_x = v->ucu_W_2_in_axes2_yz + ucu_alpha_1_in_axes2_x;
     const real ucu_alpha_2_in_axes2_y = ucu_alpha_1_in_axes2_y - v->ucu_W_2_in_axes2_xz;
     /* (ucu-B_2) acceleration tensor of link 2 */
-    const real ucu_B_2_in_axes2_xy = v->ucu_W_2_in_axes2_xy - ucu_qdd_2;
-    const real ucu_B_2_in_axes2_yx = v->ucu_W_2_in_axes2_xy + ucu_qdd_2;
+    const real ucu_B_2_in_axes2_xy = v->ucu_W_2_in_axes2_xy - v->ucu_qdd_2;
+    const real ucu_B_2_in_axes2_yx = v->ucu_W_2_in_axes2_xy + v->ucu_qdd_2;
     const real ucu_B_2_in_axes2_zx = v->ucu_W_2_in_axes2_xz - ucu_alpha_2_in_axes2_y;
     const real ucu_B_2_in_axes2_zy = v->ucu_W_2_in_axes2_yz + ucu_alpha_2_in_axes2_x;
     /* (ucu-alpha_4) angular acceleration of link 4 */
-    const real ucu_alpha_4_in_axes4_x = ucu_zeta_4_in_axes4_x +
-        ucu_alpha_2_in_axes2_y*v->ucu_e_2_in_axes4_y + v->ucu_c_4*ucu_qdd_2;
-    const real ucu_alpha_4_in_axes4_y = v->ucu_e_2_in_axes4_y*ucu_qdd_2 -
-        v->ucu_omega_2_in_axes4_x*v->ucu_qd_4 - ucu_alpha_2_in_axes2_y*v->ucu_c_4;
-    const real ucu_alpha_4_in_axes4_z = ucu_alpha_2_in_axes2_x -
-        v->inv_ucu_end_p1_in_axes4_x*(v->ucu_qd_4_t_4*ucu_qdd_1 + ucu_etad_1 -
-        v->ucu_n_m1_in_axes2_z*ucu_qdd_2);
+    const real ucu_alpha_4_in_axes4_x = v->ucu_zeta_4_in_axes4_x_2 +
+        ucu_alpha_2_in_axes2_y*v->ucu_e_2_in_axes4_y + v->ucu_e_2_in_axes4_x*v->ucu_qdd_2;
+    const real ucu_alpha_4_in_axes4_y = v->ucu_e_2_in_axes4_y*v->ucu_qdd_2 -
+        v->ucu_omega_2_in_axes4_x*v->ucu_qd_4_2 -
+        ucu_alpha_2_in_axes2_y*v->ucu_e_2_in_axes4_x;
+    const real ucu_alpha_4_in_axes4_z = ucu_alpha_2_in_axes2_x - v->ucu_qdd_4_t;
     /* (ucu-B_4) acceleration tensor of link 4 */
     const real ucu_B_4_in_axes4_xy = v->ucu_W_2_in_axes4_xy - ucu_alpha_4_in_axes4_z;
-    const real ucu_B_4_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_in_axes4_y;
+    const real ucu_B_4_in_axes4_xz = ucu_W_4_in_axes4_xz_2 + ucu_alpha_4_in_axes4_y;
     const real ucu_B_4_in_axes4_yx = v->ucu_W_2_in_axes4_xy + ucu_alpha_4_in_axes4_z;
-    const real ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_in_axes4_x;
-    const real ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_in_axes4_y;
-    const real ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_in_axes4_x;
+    const real ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz_2 - ucu_alpha_4_in_axes4_x;
+    const real ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz_2 - ucu_alpha_4_in_axes4_y;
+    const real ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz_2 + ucu_alpha_4_in_axes4_x;
     /* (ucu-acc_4) acceleration of the reference point of link 4, less gravity */
-    const real ucu_acc_4_in_axes4_x = ucu_S_ddot_in_axes4_x -
-        v->axis_x_ucu_axes4_x*m->gravity_x - v->axis_x_ucu_axes4_y*m->gravity_y -
-        v->axis_x_ucu_axes4_z*m->gravity_z;
-    const real ucu_acc_4_in_axes4_y = ucu_S_ddot_in_axes4_y -
-        v->axis_y_ucu_axes4_x*m->gravity_x - v->axis_y_ucu_axes4_y*m->gravity_y -
-        v->axis_y_ucu_axes4_z*m->gravity_z;
-    const real ucu_acc_4_in_axes4_z = v->ucu_S_ddot_x*v->ucu_w_3_x +
-        v->ucu_S_ddot_y*v->ucu_w_3_y + v->ucu_S_ddot_z*v->ucu_w_3_z -
-        m->gravity_x*v->ucu_w_3_x - m->gravity_y*v->ucu_w_3_y - m->gravity_z*v->ucu_w_3_z;
+    v->ucu_acc_4_in_axes4_x = v->ucu_S_ddot_in_axes4_x - v->ucu_g_in_axes4_x;
+    v->ucu_acc_4_in_axes4_y = v->ucu_S_ddot_in_axes4_y - v->ucu_g_in_axes4_y;
+    v->ucu_acc_4_in_axes4_z = v->ucu_S_ddot_in_axes4_z - v->ucu_g_in_axes4_z;
+    /* (ucu-phi_4) inertia force of link 4 from its turning about its reference point */
+    v->ucu_phi_4_in_axes4_z = ucu_B_4_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] - v->ucu_phi_4_t +
+        ucu_B_4_in_axes4_zy*m->ucu_h_4_in_spec4_z[i];
+    /* (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points */
+    const real ucu_mu_4_t_2 = v->ucu_omega_4_in_axes4_z_2*v->ucu_omega_4_in_axes4_z_2;
+    const real ucu_mu_4_in_axes4_x = v->ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
+        v->ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_x[i] +
+        m->ucu_J_4_in_spec4_xz[i]*(v->ucu_W_2_t_2 - ucu_mu_4_t_2) +
+        ucu_B_4_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] -
+        ucu_B_4_in_axes4_yz*m->ucu_Sigma_4_in_axes4_zz[i] -
+        ucu_B_4_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i] +
+        ucu_B_4_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i];
+    const real ucu_mu_4_in_axes4_y = v->ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
+        v->ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_y[i] -
+        m->ucu_J_4_in_spec4_xy[i]*(v->ucu_W_2_t - ucu_mu_4_t_2) +
+        ucu_B_4_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
+        ucu_B_4_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] -
+        ucu_B_4_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i] -
+        ucu_B_4_in_axes4_xy*m->ucu_J_4_in_spec4_xz[i];
+    const real ucu_mu_4_in_axes4_z = v->ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
+        v->ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_z[i] + v->ucu_mu_4_t +
+        ucu_B_4_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] -
+        ucu_B_4_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i] +
+        ucu_B_4_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] -
+        ucu_B_4_in_axes4_xy*m->ucu_Sigma_4_in_axes4_yy[i];
     /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ucu_mu_2_t_4 = v->ucu_omega_1_in_axes2_x*v->ucu_omega_1_in_axes2_x;
-    const real ucu_mu_2_t_5 = v->ucu_omega_1_in_axes2_y*v->ucu_omega_1_in_axes2_y;
-    const real ucu_mu_2_t_6 = v->ucu_qd_2*v->ucu_qd_2;
-    const real ucu_mu_2_t_7 = v->ucu_c_1*m->ucu_mu_2_t[i] + m->ucu_mu_2_t_2[i]*v->ucu_s_1;
-    const real ucu_g_in_axes2_x = v->ucu_c_2*ucu_mu_2_t_7 +
-        v->ucu_e_1_in_axes4_z*m->ucu_mu_2_t_3[i];
-    const real ucu_g_in_axes2_y = v->ucu_e_1_in_axes4_z*ucu_mu_2_t_7 -
-        v->ucu_c_2*m->ucu_mu_2_t_3[i];
-    const real ucu_mu_2_in_axes2_x = v->ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_z[i] +
-        ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_y[i] - m->ucu_J_2_in_spec2_yz[i]*(ucu_mu_2_t_5 -
-        ucu_mu_2_t_6) + m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_in_axes2_x +
+    const real ucu_mu_2_in_axes2_x = v->ucu_mu_2_t_11 - v->ucu_mu_2_t_8 +
+        m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_in_axes2_x +
         ucu_B_2_in_axes2_yx*m->ucu_J_2_in_spec2_xy[i] +
         ucu_B_2_in_axes2_zx*m->ucu_J_2_in_spec2_xz[i] +
         ucu_B_2_in_axes2_zy*m->ucu_Sigma_2_in_axes2_yy[i];
-    const real ucu_mu_2_in_axes2_y = v->ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_x[i] -
-        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_y[i] - m->ucu_J_2_in_spec2_xy[i]*(ucu_mu_2_t_4 -
-        ucu_mu_2_t_6) + m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_in_axes2_y +
-        ucu_B_2_in_axes2_xy*m->ucu_J_2_in_spec2_yz[i] -
+    const real ucu_mu_2_in_axes2_y = m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_in_axes2_y -
+        v->ucu_mu_2_t_12 - v->ucu_mu_2_t_9 + ucu_B_2_in_axes2_xy*m->ucu_J_2_in_spec2_yz[i] -
         ucu_B_2_in_axes2_zx*m->ucu_Sigma_2_in_axes2_xx[i] -
         ucu_B_2_in_axes2_zy*m->ucu_J_2_in_spec2_xz[i];
     const real ucu_mu_2_in_axes2_z = m->ucu_J_2_in_spec2_xy[i]*ucu_alpha_1_in_axes2_x -
-        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_z[i] - ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_x[i]
-        - m->ucu_J_2_in_spec2_xz[i]*(ucu_mu_2_t_4 - ucu_mu_2_t_5) -
-        m->ucu_J_2_in_spec2_yz[i]*ucu_alpha_1_in_axes2_y +
-        ucu_B_2_in_axes2_yx*m->ucu_Sigma_2_in_axes2_xx[i] -
+        v->ucu_mu_2_t_13 - v->ucu_mu_2_t_10 - m->ucu_J_2_in_spec2_yz[i]*ucu_alpha_1_in_axes2_y
+        + ucu_B_2_in_axes2_yx*m->ucu_Sigma_2_in_axes2_xx[i] -
         ucu_B_2_in_axes2_xy*m->ucu_Sigma_2_in_axes2_yy[i];
-    v->ucu_B_4_in_axes4_xy = ucu_B_4_in_axes4_xy;
-    v->ucu_B_4_in_axes4_xz = ucu_B_4_in_axes4_xz;
-    v->ucu_B_4_in_axes4_yx = ucu_B_4_in_axes4_yx;
-    v->ucu_B_4_in_axes4_yz = ucu_B_4_in_axes4_yz;
-    v->ucu_B_4_in_axes4_zx = ucu_B_4_in_axes4_zx;
-    v->ucu_B_4_in_axes4_zy = ucu_B_4_in_axes4_zy;
-    v->ucu_acc_4_in_axes4_x = ucu_acc_4_in_axes4_x;
-    v->ucu_acc_4_in_axes4_y = ucu_acc_4_in_axes4_y;
-    v->ucu_acc_4_in_axes4_z = ucu_acc_4_in_axes4_z;
-    v->ucu_mu_2_in_axes2_x = ucu_mu_2_in_axes2_x;
-    v->ucu_mu_2_in_axes2_y = ucu_mu_2_in_axes2_y;
-    v->ucu_mu_2_in_axes2_z = ucu_mu_2_in_axes2_z;
+    /* (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
+       left out */
+    const real ucu_N_2_in_axes2_x = ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z;
+    const real ucu_N_2_in_axes2_y = ucu_mu_2_in_axes2_y +
+        v->ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x - v->ucu_e_2_in_axes4_x*ucu_mu_4_in_axes4_y;
+    const real ucu_N_2_in_axes2_z = ucu_mu_2_in_axes2_z +
+        v->ucu_e_2_in_axes4_x*ucu_mu_4_in_axes4_x + v->ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y;
+    /* (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real ucu_G_m1_t = v->inv_ucu_end_p1_in_axes4_x*ucu_mu_4_in_axes4_z;
+    /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real ucu_c_t = v->inv_ucu_h_4_t_12*(ucu_G_m1_t*v->ucu_n_m1_in_axes2_z +
+        ucu_N_2_in_axes2_z);
+    const real ucu_c_t_2 = v->inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*v->ucu_w_4_t -
+        ucu_N_2_in_axes2_x*v->ucu_e_1_in_axes4_z + ucu_N_2_in_axes2_y*v->ucu_h_4_t_13 -
+        ucu_c_t*v->ucu_v_1_t_2);
+    v->ucu_c_in_axes4_x = m->ucu_h_4_in_spec4_y[i]*(v->ucu_W_2_t_2 + ucu_mu_4_t_2) -
+        ucu_B_4_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] -
+        ucu_B_4_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] - ucu_c_t*v->ucu_e_2_in_axes4_y +
+        ucu_c_t_2*v->ucu_e_2_in_axes4_x;
+    v->ucu_c_in_axes4_y = m->ucu_h_4_in_spec4_z[i]*(v->ucu_W_2_t + ucu_mu_4_t_2) -
+        ucu_B_4_in_axes4_yz*m->ucu_h_4_in_spec4_x[i] -
+        ucu_B_4_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] + ucu_c_t*v->ucu_e_2_in_axes4_x +
+        ucu_c_t_2*v->ucu_e_2_in_axes4_y;
+    /* (ucu-c_m) moment of the leg on the platform without actuation */
+    const real ucu_c_m_in_axes4_x = ucu_G_m1_t*v->ucu_n_m1_in_axes4_x;
+    v->ucu_c_m_x = v->axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x -
+        v->axis_z_ucu_axes4_x*ucu_mu_4_in_axes4_z;
+    v->ucu_c_m_y = v->axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x -
+        v->axis_z_ucu_axes4_y*ucu_mu_4_in_axes4_z;
+    v->ucu_c_m_z = v->axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x -
+        v->axis_z_ucu_axes4_z*ucu_mu_4_in_axes4_z;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2511,30 +2456,28 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
-    stage_V_X(w, k, V, v);
-    stage_M_dynamics(m, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
-    s[18*w + k] = v->Z_p_x;
-    s[19*w + k] = v->Z_p_y;
-    s[20*w + k] = v->Z_p_z;
-    s[21*w + k] = v->Z_q_x;
-    s[22*w + k] = v->Z_q_y;
-    s[23*w + k] = v->Z_q_z;
+    s[27*w + k] = v->Z_p_x;
+    s[28*w + k] = v->Z_p_y;
+    s[29*w + k] = v->Z_p_z;
+    s[30*w + k] = v->Z_q_x;
+    s[31*w + k] = v->Z_q_y;
+    s[32*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2543,244 +2486,8 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
     stage_ucu_V_X(m, w, i, j, V, &v);
-    stage_ucu_M_dynamics(m, w, i, j, s, X, &v);
-    /* (ucu-S_dot) velocity of the connection point */
-    const real ucu_S_dot_t_7 = v.ucu_S_dot_t_4*v.ucu_h_4_t_9 + v.ucu_S_dot_t_5*v.ucu_h_4_t_10;
-    const real ucu_S_dot_in_axes2_x = v.ucu_S_dot_t_6*v.ucu_e_1_in_axes4_z +
-        ucu_S_dot_t_7*v.ucu_h_4_t_13;
-    /* (ucu-eta_1) rate at which the joints turn along moment direction 1 */
-    const real omega_x = V[3*w + j];
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real ucu_eta_1 = omega_x*v.ucu_n_m1_x + omega_y*v.ucu_n_m1_y + omega_z*v.ucu_n_m1_z;
-    /* (ucu-qd_1) rate of joint 1 */
-    const real ucu_qd_1 = v.inv_ucu_v_1_in_axes2_z*(v.ucu_S_dot_t_5*v.ucu_h_4_t_9 -
-        v.ucu_S_dot_t_4*v.ucu_h_4_t_10);
-    /* (ucu-qd_2) rate of joint 2 */
-    const real ucu_qd_2 = v.inv_ucu_h_4_t_12*(ucu_S_dot_t_7*v.ucu_e_1_in_axes4_z -
-        v.ucu_S_dot_t_6*v.ucu_h_4_t_13 + ucu_qd_1*v.ucu_v_1_t_2);
-    /* (ucu-qd_4) rate of joint 4 */
-    const real ucu_qd_4 = -v.inv_ucu_end_p1_in_axes4_x*(ucu_eta_1 + ucu_qd_1*v.ucu_w_4_t -
-        v.ucu_n_m1_in_axes2_z*ucu_qd_2);
-    /* (ucu-omega_1) angular velocity of link 1 */
-    const real ucu_omega_1_in_axes2_x = v.ucu_e_1_in_axes4_z*ucu_qd_1;
-    const real ucu_omega_1_in_axes2_y = -v.ucu_h_4_t_13*ucu_qd_1;
-    /* (ucu-omega_2) angular velocity of link 2 */
-    const real ucu_omega_2_in_axes4_x = v.ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y +
-        v.ucu_e_2_in_axes4_x*ucu_qd_2;
-    const real ucu_omega_2_in_axes4_y = v.ucu_e_2_in_axes4_y*ucu_qd_2 -
-        v.ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y;
-    /* (ucu-W_2) centripetal tensor of link 2 */
-    const real ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2;
-    const real ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2;
-    const real ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y;
-    const real ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y;
-    /* (ucu-omega_4) angular velocity of link 4 */
-    const real ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4;
-    /* (ucu-W_4) centripetal tensor of link 4 */
-    const real ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z;
-    const real ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z;
-    /* (ucu-u_1) centripetal acceleration of the connection point */
-    const real ucu_u_1_x = omega_y*v.ucu_S_dot_t_3 - omega_z*v.ucu_S_dot_t_2;
-    const real ucu_u_1_y = omega_z*v.ucu_S_dot_t - omega_x*v.ucu_S_dot_t_3;
-    const real ucu_u_1_z = omega_x*v.ucu_S_dot_t_2 - omega_y*v.ucu_S_dot_t;
-    const real ucu_u_1_in_axes4_x = v.axis_x_ucu_axes4_x*ucu_u_1_x +
-        v.axis_x_ucu_axes4_y*ucu_u_1_y + v.axis_x_ucu_axes4_z*ucu_u_1_z;
-    const real ucu_u_1_in_axes4_y = v.axis_y_ucu_axes4_x*ucu_u_1_x +
-        v.axis_y_ucu_axes4_y*ucu_u_1_y + v.axis_y_ucu_axes4_z*ucu_u_1_z;
-    /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*v.ucu_e_2_in_axes4_y;
-    /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-    const real ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4;
-    /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
-    const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t;
-    /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
-    const real ucu_bias_t = 2*ucu_S_dot_in_axes2_x;
-    const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
-        v.ucu_h_4_t_12*(ucu_W_2_in_axes2_xz*v.ucu_e_2_in_axes4_x +
-        ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
-    const real ucu_bias_in_axes4_y =
-        v.ucu_h_4_t_12*(ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y + ucu_zeta_2_t) -
-        ucu_bias_t*ucu_omega_2_in_axes4_x;
-    /* (ucu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x;
-    const real ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_bias_in_axes4_y;
-    /* (ucu-nd_m1) rate of moment direction 1 */
-    const real ucu_end_p1_in_axes4_y = v.ucu_e_2_in_axes4_y*v.ucu_end_p1_in_turn4_x -
-        v.ucu_e_2_in_axes4_x*v.ucu_h_4_t_18;
-    const real ucu_omega_in_axes4_x = v.axis_x_ucu_axes4_x*omega_x +
-        v.axis_x_ucu_axes4_y*omega_y + v.axis_x_ucu_axes4_z*omega_z;
-    const real ucu_omega_in_axes4_y = v.axis_y_ucu_axes4_x*omega_x +
-        v.axis_y_ucu_axes4_y*omega_y + v.axis_y_ucu_axes4_z*omega_z;
-    const real ucu_omega_in_axes4_z = v.axis_z_ucu_axes4_x*omega_x +
-        v.axis_z_ucu_axes4_y*omega_y + v.axis_z_ucu_axes4_z*omega_z;
-    const real ucu_nd_m1_in_axes4_x = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
-        v.ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
-        ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
-    const real ucu_nd_m1_in_axes4_z = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
-        v.ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y -
-        ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z;
-    /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*v.ucu_n_m1_in_axes4_x -
-        ucu_W_2_in_axes2_yz*v.ucu_end_p1_in_axes4_x;
-    const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
-        ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
-        ucu_omega_in_axes4_z) + (ucu_omega_2_in_axes4_y -
-        ucu_omega_in_axes4_y)*(v.ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
-        v.ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
-    const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
-    /* (ucu-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real ucu_qdd_1_o =
-        v.inv_ucu_v_1_in_axes2_z*(v.ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
-        v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y);
-    /* (ucu-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real ucu_qdd_2_o = v.inv_ucu_h_4_t_12*(v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x -
-        v.ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y + ucu_qdd_1_o*v.ucu_v_1_t_2);
-    /* (ucu-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real ucu_alpha_1_o_in_axes2_x = v.ucu_e_1_in_axes4_z*ucu_qdd_1_o;
-    const real ucu_alpha_1_o_in_axes2_y = -v.ucu_h_4_t_13*ucu_qdd_1_o;
-    /* (ucu-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real ucu_alpha_2_o_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x;
-    const real ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - ucu_W_2_in_axes2_xz;
-    /* (ucu-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real ucu_B_2_o_in_axes2_xy = ucu_W_2_in_axes2_xy - ucu_qdd_2_o;
-    const real ucu_B_2_o_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2_o;
-    const real ucu_B_2_o_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_o_in_axes2_y;
-    const real ucu_B_2_o_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x;
-    /* (ucu-alpha_4_o) remainder of: angular acceleration of link 4 */
-    const real ucu_alpha_4_o_in_axes4_x = ucu_zeta_4_in_axes4_x +
-        ucu_alpha_2_o_in_axes2_y*v.ucu_e_2_in_axes4_y + v.ucu_e_2_in_axes4_x*ucu_qdd_2_o;
-    const real ucu_alpha_4_o_in_axes4_y = v.ucu_e_2_in_axes4_y*ucu_qdd_2_o -
-        ucu_omega_2_in_axes4_x*ucu_qd_4 - ucu_alpha_2_o_in_axes2_y*v.ucu_e_2_in_axes4_x;
-    const real ucu_alpha_4_o_in_axes4_z = ucu_alpha_2_o_in_axes2_x -
-        v.inv_ucu_end_p1_in_axes4_x*(ucu_nu_1 + ucu_qdd_1_o*v.ucu_w_4_t -
-        v.ucu_n_m1_in_axes2_z*ucu_qdd_2_o);
-    /* (ucu-B_4_o) remainder of the acceleration tensor of link 4 */
-    const real ucu_B_4_o_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_o_in_axes4_z;
-    const real ucu_B_4_o_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_o_in_axes4_y;
-    const real ucu_B_4_o_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_o_in_axes4_z;
-    const real ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x;
-    const real ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y;
-    const real ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x;
-    /* (ucu-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-    const real ucu_acc_4_o_in_axes4_x = ucu_u_1_in_axes4_x - v.axis_x_ucu_axes4_x*m->gravity_x
-        - v.axis_x_ucu_axes4_y*m->gravity_y - v.axis_x_ucu_axes4_z*m->gravity_z;
-    const real ucu_acc_4_o_in_axes4_y = ucu_u_1_in_axes4_y - v.axis_y_ucu_axes4_x*m->gravity_x
-        - v.axis_y_ucu_axes4_y*m->gravity_y - v.axis_y_ucu_axes4_z*m->gravity_z;
-    const real ucu_acc_4_o_in_axes4_z = v.axis_z_ucu_axes4_x*ucu_u_1_x +
-        v.axis_z_ucu_axes4_y*ucu_u_1_y + v.axis_z_ucu_axes4_z*ucu_u_1_z -
-        v.axis_z_ucu_axes4_x*m->gravity_x - v.axis_z_ucu_axes4_y*m->gravity_y -
-        v.axis_z_ucu_axes4_z*m->gravity_z;
-    /* (ucu-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
-       */
-    const real ucu_phi_4_o_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x;
-    const real ucu_phi_4_o_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y;
-    const real ucu_phi_4_o_in_axes4_z = ucu_B_4_o_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] -
-        m->ucu_h_4_in_spec4_x[i]*(ucu_phi_4_o_t + ucu_phi_4_o_t_2) +
-        ucu_B_4_o_in_axes4_zy*m->ucu_h_4_in_spec4_z[i];
-    /* (ucu-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
-       reference points */
-    const real ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
-    const real ucu_mu_4_o_in_axes4_x = ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
-        ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_x[i] +
-        m->ucu_J_4_in_spec4_xz[i]*(ucu_phi_4_o_t_2 - ucu_mu_4_o_t) +
-        ucu_B_4_o_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i] +
-        ucu_B_4_o_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] -
-        ucu_B_4_o_in_axes4_yz*m->ucu_Sigma_4_in_axes4_zz[i] -
-        ucu_B_4_o_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i];
-    const real ucu_mu_4_o_in_axes4_y = ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
-        ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_y[i] -
-        m->ucu_J_4_in_spec4_xy[i]*(ucu_phi_4_o_t - ucu_mu_4_o_t) +
-        ucu_B_4_o_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
-        ucu_B_4_o_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] -
-        ucu_B_4_o_in_axes4_xy*m->ucu_J_4_in_spec4_xz[i] -
-        ucu_B_4_o_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i];
-    const real ucu_mu_4_o_in_axes4_z = ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
-        ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_z[i] +
-        m->ucu_J_4_in_spec4_yz[i]*(ucu_phi_4_o_t - ucu_phi_4_o_t_2) +
-        ucu_B_4_o_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] +
-        ucu_B_4_o_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] -
-        ucu_B_4_o_in_axes4_xy*m->ucu_Sigma_4_in_axes4_yy[i] -
-        ucu_B_4_o_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i];
-    /* (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real ucu_mu_2_o_t = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x;
-    const real ucu_mu_2_o_t_2 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y;
-    const real ucu_mu_2_o_t_3 = ucu_qd_2*ucu_qd_2;
-    const real ucu_mu_2_o_t_4 = v.ucu_h_4_t_10*m->ucu_mu_2_t_2[i] +
-        v.ucu_h_4_t_9*m->ucu_mu_2_t[i];
-    const real ucu_g_in_axes2_z = v.ucu_h_4_t_9*m->ucu_mu_2_t_2[i] -
-        v.ucu_h_4_t_10*m->ucu_mu_2_t[i];
-    const real ucu_g_in_axes2_x = v.ucu_e_1_in_axes4_z*m->ucu_mu_2_t_3[i] +
-        v.ucu_h_4_t_13*ucu_mu_2_o_t_4;
-    const real ucu_g_in_axes2_y = v.ucu_e_1_in_axes4_z*ucu_mu_2_o_t_4 -
-        v.ucu_h_4_t_13*m->ucu_mu_2_t_3[i];
-    const real ucu_mu_2_o_in_axes2_x = ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_z[i] +
-        ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_y[i] - m->ucu_J_2_in_spec2_yz[i]*(ucu_mu_2_o_t_2
-        - ucu_mu_2_o_t_3) + m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_x +
-        ucu_B_2_o_in_axes2_yx*m->ucu_J_2_in_spec2_xy[i] +
-        ucu_B_2_o_in_axes2_zx*m->ucu_J_2_in_spec2_xz[i] +
-        ucu_B_2_o_in_axes2_zy*m->ucu_Sigma_2_in_axes2_yy[i];
-    const real ucu_mu_2_o_in_axes2_y = ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_x[i] -
-        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_y[i] - m->ucu_J_2_in_spec2_xy[i]*(ucu_mu_2_o_t -
-        ucu_mu_2_o_t_3) + m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_y +
-        ucu_B_2_o_in_axes2_xy*m->ucu_J_2_in_spec2_yz[i] -
-        ucu_B_2_o_in_axes2_zx*m->ucu_Sigma_2_in_axes2_xx[i] -
-        ucu_B_2_o_in_axes2_zy*m->ucu_J_2_in_spec2_xz[i];
-    const real ucu_mu_2_o_in_axes2_z = m->ucu_J_2_in_spec2_xy[i]*ucu_alpha_1_o_in_axes2_x -
-        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_z[i] - ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_x[i]
-        - m->ucu_J_2_in_spec2_xz[i]*(ucu_mu_2_o_t - ucu_mu_2_o_t_2) -
-        m->ucu_J_2_in_spec2_yz[i]*ucu_alpha_1_o_in_axes2_y +
-        ucu_B_2_o_in_axes2_yx*m->ucu_Sigma_2_in_axes2_xx[i] -
-        ucu_B_2_o_in_axes2_xy*m->ucu_Sigma_2_in_axes2_yy[i];
-    /* (ucu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-       connection point left out */
-    const real ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z;
-    const real ucu_N_2_o_in_axes2_y = ucu_mu_2_o_in_axes2_y +
-        v.ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x -
-        v.ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_y;
-    const real ucu_N_2_o_in_axes2_z = ucu_mu_2_o_in_axes2_z +
-        v.ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_x +
-        v.ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y;
-    /* (ucu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real ucu_G_m1_o_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z;
-    /* (ucu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real ucu_c_o_t = v.inv_ucu_h_4_t_12*(ucu_G_m1_o_t*v.ucu_n_m1_in_axes2_z +
-        ucu_N_2_o_in_axes2_z);
-    const real ucu_c_o_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*v.ucu_w_4_t -
-        ucu_N_2_o_in_axes2_x*v.ucu_e_1_in_axes4_z + ucu_N_2_o_in_axes2_y*v.ucu_h_4_t_13 -
-        ucu_c_o_t*v.ucu_v_1_t_2);
-    const real ucu_c_o_in_axes4_x = m->ucu_h_4_in_spec4_y[i]*(ucu_phi_4_o_t_2 + ucu_mu_4_o_t)
-        - ucu_B_4_o_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
-        ucu_B_4_o_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_o_t*v.ucu_e_2_in_axes4_y +
-        ucu_c_o_t_2*v.ucu_e_2_in_axes4_x;
-    const real ucu_c_o_in_axes4_y = m->ucu_h_4_in_spec4_z[i]*(ucu_phi_4_o_t + ucu_mu_4_o_t) -
-        ucu_B_4_o_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] -
-        ucu_B_4_o_in_axes4_yz*m->ucu_h_4_in_spec4_x[i] + ucu_c_o_t*v.ucu_e_2_in_axes4_x +
-        ucu_c_o_t_2*v.ucu_e_2_in_axes4_y;
-    /* (ucu-c_m_o) remainder of: moment of the leg on the platform without actuation */
-    const real ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*v.ucu_n_m1_in_axes4_x;
-    /* (ucu-U) velocity and gravity terms of the leg force */
-    const real ucu_U_x = v.axis_z_ucu_axes4_x*ucu_phi_4_o_in_axes4_z -
-        v.axis_x_ucu_axes4_x*ucu_c_o_in_axes4_x - v.axis_y_ucu_axes4_x*ucu_c_o_in_axes4_y;
-    const real ucu_U_y = v.axis_z_ucu_axes4_y*ucu_phi_4_o_in_axes4_z -
-        v.axis_x_ucu_axes4_y*ucu_c_o_in_axes4_x - v.axis_y_ucu_axes4_y*ucu_c_o_in_axes4_y;
-    const real ucu_U_z = v.axis_z_ucu_axes4_z*ucu_phi_4_o_in_axes4_z -
-        v.axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x - v.axis_y_ucu_axes4_z*ucu_c_o_in_axes4_y;
-    /* (Z_a) rotational part of Z */
-    const real ucu_Z_a_t = v.axis_z_ucu_axes4_x*ucu_mu_4_o_in_axes4_z -
-        v.axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x + ucu_U_z*v.ucu_q_y - ucu_U_y*v.ucu_q_z;
-    const real ucu_Z_a_t_2 = v.axis_z_ucu_axes4_y*ucu_mu_4_o_in_axes4_z -
-        v.axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x + ucu_U_x*v.ucu_q_z - ucu_U_z*v.ucu_q_x;
-    const real ucu_Z_a_t_3 = v.axis_z_ucu_axes4_z*ucu_mu_4_o_in_axes4_z -
-        v.axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x + ucu_U_y*v.ucu_q_x - ucu_U_x*v.ucu_q_y;
-    /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-    const real ucu_H_a_3_x = v.axis_z_ucu_axes4_z*v.ucu_q_y - v.axis_z_ucu_axes4_y*v.ucu_q_z;
-    const real ucu_H_a_3_y = v.axis_z_ucu_axes4_x*v.ucu_q_z - v.axis_z_ucu_axes4_z*v.ucu_q_x;
-    const real ucu_H_a_3_z = v.axis_z_ucu_axes4_y*v.ucu_q_x - v.axis_z_ucu_axes4_x*v.ucu_q_y;
+    stage_ucu_M_dynamics(m, i, &v);
+    stage_ucu_Z_dynamics(m, w, i, j, V, &v);
     /* (M_tt) translational block of M */
     gather(&terms[0*count + k], add, v.ucu_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v.ucu_Q_xy);  /* M_tt_xy */
@@ -2806,23 +2513,23 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[19*count + k], add, v.ucu_M_aa_t_5);  /* M_aa_yz_of_legs */
     gather(&terms[20*count + k], add, v.ucu_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, ucu_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, ucu_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, ucu_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[24*count + k], add, ucu_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, ucu_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, ucu_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[21*count + k], add, v.ucu_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, v.ucu_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, v.ucu_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[24*count + k], add, v.ucu_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, v.ucu_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, v.ucu_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (ucu-w_3) force part of reciprocal wrench 3 */
     o[0*count + k] = v.axis_z_ucu_axes4_x;
     o[1*count + k] = v.axis_z_ucu_axes4_y;
     o[2*count + k] = v.axis_z_ucu_axes4_z;
-    /* (ucu-H_a_3) */
-    o[3*count + k] = ucu_H_a_3_x;
-    o[4*count + k] = ucu_H_a_3_y;
-    o[5*count + k] = ucu_H_a_3_z;
+    /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.ucu_H_a_3_x;
+    o[4*count + k] = v.ucu_H_a_3_y;
+    o[5*count + k] = v.ucu_H_a_3_z;
     o[7*count + k] = (v.axis_z_ucu_axes4_x + (v.axis_z_ucu_axes4_y + v.axis_z_ucu_axes4_z)) +
-        (ucu_H_a_3_x + (ucu_H_a_3_y + ucu_H_a_3_z));
+        (v.ucu_H_a_3_x + (v.ucu_H_a_3_y + v.ucu_H_a_3_z));
     o[6*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
         UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
         LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
@@ -2831,7 +2538,7 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void dynamics_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2844,7 +2551,7 @@ INLINE void dynamics_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2855,58 +2562,58 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
-    const real Z_p_x = s[18*w + k];
+    const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[21*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
+    const real Z_p_y = s[28*w + k];
     const real Z_t_y_of_legs = sums[22*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
+    const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[23*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
-    const real Z_q_x = s[21*w + k];
+    const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
-    const real Z_q_y = s[22*w + k];
+    const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
-    const real Z_q_z = s[23*w + k];
+    const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2968,9 +2675,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
-    real s[24] = {0}, sums[27] = {0};
+    real s[33] = {0}, sums[27] = {0};
     real terms_ucu[27*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[8*LEGS(LEGS_OF_ucu)] = {0};
     values v;
     dynamics_before(m, 1, 0, X, &v, s, t);
@@ -2988,9 +2695,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[27*LANES];
+    real s[33*LANES], sums[27*LANES];
     real o_ucu[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3013,7 +2720,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 
 /* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3025,21 +2732,16 @@ INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, value
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
-{
-    stage_M_dynamics(m, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3047,7 +2749,7 @@ INLINE void M_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
-    stage_ucu_M_dynamics(m, w, i, j, s, X, &v);
+    stage_ucu_M_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
     gather(&terms[0*count + k], add, v.ucu_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v.ucu_Q_xy);  /* M_tt_xy */
@@ -3079,13 +2781,13 @@ INLINE void M_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_4);
 }
 
-INLINE void M_place_ucu(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_ucu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -3096,37 +2798,37 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -3180,9 +2882,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[18] = {0}, sums[21] = {0};
+    real s[27] = {0}, sums[21] = {0};
     real terms_ucu[21*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[LEGS(LEGS_OF_ucu)] = {0};
     values v;
     M_before(m, 1, 0, X, &v, s, t);
@@ -3195,18 +2897,17 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
     }
-    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
-    real s[18*LANES], sums[21*LANES];
+    real s[27*LANES], sums[21*LANES];
     real o_ucu[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         M_before(m, LANES, k, X, &v, s, t);
-        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
@@ -3224,7 +2925,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 
 /* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3241,14 +2942,13 @@ INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, value
 
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[9*w + k] = v->Z_p_x;
-    s[10*w + k] = v->Z_p_y;
-    s[11*w + k] = v->Z_p_z;
-    s[12*w + k] = v->Z_q_x;
-    s[13*w + k] = v->Z_q_y;
-    s[14*w + k] = v->Z_q_z;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3257,258 +2957,48 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
     stage_ucu_V_X(m, w, i, j, V, &v);
-    /* (ucu-eta_1) rate at which the joints turn along moment direction 1 */
-    const real ucu_eta_1_t = v.ucu_c_4*v.ucu_e_1_in_axes4_z;
-    const real ucu_eta_1_t_2 = -v.ucu_e_2_in_axes4_y*v.ucu_s_1 - v.ucu_c_1*ucu_eta_1_t;
-    const real ucu_eta_1_t_3 = v.ucu_c_1*v.ucu_e_2_in_axes4_y - ucu_eta_1_t*v.ucu_s_1;
-    const real axis_y_ucu_axes4_x = m->ucu_base_frame_xz[i]*v.ucu_e_1_in_axes4_y +
-        m->ucu_base_frame_xx[i]*ucu_eta_1_t_2 + m->ucu_base_frame_xy[i]*ucu_eta_1_t_3;
-    const real axis_y_ucu_axes4_y = m->ucu_base_frame_yz[i]*v.ucu_e_1_in_axes4_y +
-        m->ucu_base_frame_yx[i]*ucu_eta_1_t_2 + m->ucu_base_frame_yy[i]*ucu_eta_1_t_3;
-    const real axis_y_ucu_axes4_z = m->ucu_base_frame_zz[i]*v.ucu_e_1_in_axes4_y +
-        m->ucu_base_frame_zx[i]*ucu_eta_1_t_2 + m->ucu_base_frame_zy[i]*ucu_eta_1_t_3;
-    const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*v.ucu_w_3_z -
-        axis_y_ucu_axes4_z*v.ucu_w_3_y;
-    const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*v.ucu_w_3_x -
-        axis_y_ucu_axes4_x*v.ucu_w_3_z;
-    const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*v.ucu_w_3_y -
-        axis_y_ucu_axes4_y*v.ucu_w_3_x;
-    const real omega_x = V[3*w + j];
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real ucu_eta_1 = omega_x*(axis_x_ucu_axes4_x*v.ucu_n_m1_in_axes4_x -
-        v.ucu_end_p1_in_axes4_x*v.ucu_w_3_x) +
-        omega_y*(axis_x_ucu_axes4_y*v.ucu_n_m1_in_axes4_x -
-        v.ucu_end_p1_in_axes4_x*v.ucu_w_3_y) +
-        omega_z*(axis_x_ucu_axes4_z*v.ucu_n_m1_in_axes4_x -
-        v.ucu_end_p1_in_axes4_x*v.ucu_w_3_z);
-    /* (ucu-qd_4) rate of joint 4 */
-    const real ucu_qd_4_t = v.ucu_e_1_in_axes4_z*v.ucu_end_p1_in_axes4_x +
-        v.ucu_n_m1_in_axes4_x*v.ucu_v_1_t;
-    const real ucu_qd_4 = -v.inv_ucu_end_p1_in_axes4_x*(ucu_eta_1 + v.ucu_qd_1*ucu_qd_4_t -
-        v.ucu_n_m1_in_axes2_z*v.ucu_qd_2);
-    /* (ucu-omega_4) angular velocity of link 4 */
-    const real ucu_omega_4_in_axes4_z = v.ucu_omega_1_in_axes2_x + ucu_qd_4;
-    /* (ucu-W_4) centripetal tensor of link 4 */
-    const real ucu_W_4_in_axes4_xz = v.ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z;
-    const real ucu_W_4_in_axes4_yz = v.ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z;
-    /* (ucu-u_1) centripetal acceleration of the connection point */
-    const real ucu_u_1_x = omega_y*v.ucu_S_dot_t_3 - omega_z*v.ucu_S_dot_t_2;
-    const real ucu_u_1_y = omega_z*v.ucu_S_dot_t - omega_x*v.ucu_S_dot_t_3;
-    const real ucu_u_1_z = omega_x*v.ucu_S_dot_t_2 - omega_y*v.ucu_S_dot_t;
-    const real ucu_u_1_in_axes4_x = axis_x_ucu_axes4_x*ucu_u_1_x +
-        axis_x_ucu_axes4_y*ucu_u_1_y + axis_x_ucu_axes4_z*ucu_u_1_z;
-    const real ucu_u_1_in_axes4_y = axis_y_ucu_axes4_x*ucu_u_1_x +
-        axis_y_ucu_axes4_y*ucu_u_1_y + axis_y_ucu_axes4_z*ucu_u_1_z;
-    /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-    const real ucu_zeta_4_in_axes4_x = v.ucu_omega_2_in_axes4_y*ucu_qd_4;
-    /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
-    const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - v.ucu_zeta_2_t;
-    /* (ucu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - v.ucu_bias_in_axes4_x;
-    const real ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - v.ucu_bias_in_axes4_y;
-    /* (ucu-nd_m1) rate of moment direction 1 */
-    const real ucu_omega_in_axes4_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y
-        + axis_x_ucu_axes4_z*omega_z;
-    const real ucu_omega_in_axes4_y = axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y
-        + axis_y_ucu_axes4_z*omega_z;
-    const real ucu_nd_m1_in_axes4_x = v.ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
-        v.ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
-        v.ucu_end_p1_in_axes4_y*v.ucu_omega_2_in_axes4_x;
-    const real ucu_nd_m1_in_axes4_z = v.ucu_end_p1_in_axes4_y*v.ucu_omega_in_axes4_z -
-        v.ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y -
-        v.ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z;
-    /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*v.ucu_n_m1_in_axes4_x -
-        v.ucu_W_2_in_axes2_yz*v.ucu_end_p1_in_axes4_x;
-    const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(v.ucu_omega_2_in_axes4_x -
-        ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
-        v.ucu_omega_in_axes4_z) + (v.ucu_omega_2_in_axes4_y -
-        ucu_omega_in_axes4_y)*(v.ucu_end_p1_in_axes4_x*v.ucu_omega_2_in_axes4_x +
-        v.ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
-    const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
-    /* (ucu-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real ucu_qdd_1_o = v.inv_ucu_v_1_in_axes2_z*(v.ucu_c_4*ucu_rel_o_in_axes4_x +
-        v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y);
-    /* (ucu-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real ucu_qdd_2_o = v.inv_ucu_root_2*(v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x -
-        v.ucu_c_4*ucu_rel_o_in_axes4_y + ucu_qdd_1_o*v.ucu_v_1_t_2);
-    /* (ucu-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real ucu_alpha_1_o_in_axes2_x = v.ucu_e_1_in_axes4_z*ucu_qdd_1_o;
-    const real ucu_alpha_1_o_in_axes2_y = -v.ucu_c_2*ucu_qdd_1_o;
-    /* (ucu-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real ucu_alpha_2_o_in_axes2_x = v.ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x;
-    const real ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - v.ucu_W_2_in_axes2_xz;
-    /* (ucu-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real ucu_B_2_o_in_axes2_xy = v.ucu_W_2_in_axes2_xy - ucu_qdd_2_o;
-    const real ucu_B_2_o_in_axes2_yx = v.ucu_W_2_in_axes2_xy + ucu_qdd_2_o;
-    const real ucu_B_2_o_in_axes2_zx = v.ucu_W_2_in_axes2_xz - ucu_alpha_2_o_in_axes2_y;
-    const real ucu_B_2_o_in_axes2_zy = v.ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x;
-    /* (ucu-alpha_4_o) remainder of: angular acceleration of link 4 */
-    const real ucu_alpha_4_o_in_axes4_x = ucu_zeta_4_in_axes4_x +
-        ucu_alpha_2_o_in_axes2_y*v.ucu_e_2_in_axes4_y + v.ucu_c_4*ucu_qdd_2_o;
-    const real ucu_alpha_4_o_in_axes4_y = v.ucu_e_2_in_axes4_y*ucu_qdd_2_o -
-        v.ucu_omega_2_in_axes4_x*ucu_qd_4 - ucu_alpha_2_o_in_axes2_y*v.ucu_c_4;
-    const real ucu_alpha_4_o_in_axes4_z = ucu_alpha_2_o_in_axes2_x -
-        v.inv_ucu_end_p1_in_axes4_x*(ucu_nu_1 + ucu_qd_4_t*ucu_qdd_1_o -
-        v.ucu_n_m1_in_axes2_z*ucu_qdd_2_o);
-    /* (ucu-B_4_o) remainder of the acceleration tensor of link 4 */
-    const real ucu_B_4_o_in_axes4_xy = v.ucu_W_2_in_axes4_xy - ucu_alpha_4_o_in_axes4_z;
-    const real ucu_B_4_o_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_o_in_axes4_y;
-    const real ucu_B_4_o_in_axes4_yx = v.ucu_W_2_in_axes4_xy + ucu_alpha_4_o_in_axes4_z;
-    const real ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x;
-    const real ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y;
-    const real ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x;
-    /* (ucu-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-    const real ucu_acc_4_o_in_axes4_x = ucu_u_1_in_axes4_x - axis_x_ucu_axes4_x*m->gravity_x -
-        axis_x_ucu_axes4_y*m->gravity_y - axis_x_ucu_axes4_z*m->gravity_z;
-    const real ucu_acc_4_o_in_axes4_y = ucu_u_1_in_axes4_y - axis_y_ucu_axes4_x*m->gravity_x -
-        axis_y_ucu_axes4_y*m->gravity_y - axis_y_ucu_axes4_z*m->gravity_z;
-    const real ucu_acc_4_o_in_axes4_z = ucu_u_1_x*v.ucu_w_3_x + ucu_u_1_y*v.ucu_w_3_y +
-        ucu_u_1_z*v.ucu_w_3_z - m->gravity_x*v.ucu_w_3_x - m->gravity_y*v.ucu_w_3_y -
-        m->gravity_z*v.ucu_w_3_z;
-    /* (ucu-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
-       */
-    const real ucu_phi_4_o_t = v.ucu_omega_2_in_axes4_x*v.ucu_omega_2_in_axes4_x;
-    const real ucu_phi_4_o_t_2 = v.ucu_omega_2_in_axes4_y*v.ucu_omega_2_in_axes4_y;
-    const real ucu_phi_4_o_in_axes4_z = ucu_B_4_o_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] -
-        m->ucu_h_4_in_spec4_x[i]*(ucu_phi_4_o_t + ucu_phi_4_o_t_2) +
-        ucu_B_4_o_in_axes4_zy*m->ucu_h_4_in_spec4_z[i];
-    /* (ucu-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
-       reference points */
-    const real ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
-    const real ucu_mu_4_o_in_axes4_x = ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
-        ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_x[i] +
-        m->ucu_J_4_in_spec4_xz[i]*(ucu_phi_4_o_t_2 - ucu_mu_4_o_t) +
-        ucu_B_4_o_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i] +
-        ucu_B_4_o_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] -
-        ucu_B_4_o_in_axes4_yz*m->ucu_Sigma_4_in_axes4_zz[i] -
-        ucu_B_4_o_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i];
-    const real ucu_mu_4_o_in_axes4_y = ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
-        ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_y[i] -
-        m->ucu_J_4_in_spec4_xy[i]*(ucu_phi_4_o_t - ucu_mu_4_o_t) +
-        ucu_B_4_o_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
-        ucu_B_4_o_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] -
-        ucu_B_4_o_in_axes4_xy*m->ucu_J_4_in_spec4_xz[i] -
-        ucu_B_4_o_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i];
-    const real ucu_mu_4_o_in_axes4_z = ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
-        ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_z[i] +
-        m->ucu_J_4_in_spec4_yz[i]*(ucu_phi_4_o_t - ucu_phi_4_o_t_2) +
-        ucu_B_4_o_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] +
-        ucu_B_4_o_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] -
-        ucu_B_4_o_in_axes4_xy*m->ucu_Sigma_4_in_axes4_yy[i] -
-        ucu_B_4_o_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i];
-    /* (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real ucu_mu_2_o_t = v.ucu_omega_1_in_axes2_x*v.ucu_omega_1_in_axes2_x;
-    const real ucu_mu_2_o_t_2 = v.ucu_omega_1_in_axes2_y*v.ucu_omega_1_in_axes2_y;
-    const real ucu_mu_2_o_t_3 = v.ucu_qd_2*v.ucu_qd_2;
-    const real ucu_mu_2_o_t_4 = v.ucu_c_1*m->ucu_mu_2_t[i] + m->ucu_mu_2_t_2[i]*v.ucu_s_1;
-    const real ucu_g_in_axes2_x = v.ucu_c_2*ucu_mu_2_o_t_4 +
-        v.ucu_e_1_in_axes4_z*m->ucu_mu_2_t_3[i];
-    const real ucu_g_in_axes2_y = v.ucu_e_1_in_axes4_z*ucu_mu_2_o_t_4 -
-        v.ucu_c_2*m->ucu_mu_2_t_3[i];
-    const real ucu_mu_2_o_in_axes2_x = v.ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_z[i] +
-        ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_y[i] - m->ucu_J_2_in_spec2_yz[i]*(ucu_mu_2_o_t_2
-        - ucu_mu_2_o_t_3) + m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_x +
-        ucu_B_2_o_in_axes2_yx*m->ucu_J_2_in_spec2_xy[i] +
-        ucu_B_2_o_in_axes2_zx*m->ucu_J_2_in_spec2_xz[i] +
-        ucu_B_2_o_in_axes2_zy*m->ucu_Sigma_2_in_axes2_yy[i];
-    const real ucu_mu_2_o_in_axes2_y = v.ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_x[i] -
-        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_y[i] - m->ucu_J_2_in_spec2_xy[i]*(ucu_mu_2_o_t -
-        ucu_mu_2_o_t_3) + m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_y +
-        ucu_B_2_o_in_axes2_xy*m->ucu_J_2_in_spec2_yz[i] -
-        ucu_B_2_o_in_axes2_zx*m->ucu_Sigma_2_in_axes2_xx[i] -
-        ucu_B_2_o_in_axes2_zy*m->ucu_J_2_in_spec2_xz[i];
-    const real ucu_mu_2_o_in_axes2_z = m->ucu_J_2_in_spec2_xy[i]*ucu_alpha_1_o_in_axes2_x -
-        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_z[i] - ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_x[i]
-        - m->ucu_J_2_in_spec2_xz[i]*(ucu_mu_2_o_t - ucu_mu_2_o_t_2) -
-        m->ucu_J_2_in_spec2_yz[i]*ucu_alpha_1_o_in_axes2_y +
-        ucu_B_2_o_in_axes2_yx*m->ucu_Sigma_2_in_axes2_xx[i] -
-        ucu_B_2_o_in_axes2_xy*m->ucu_Sigma_2_in_axes2_yy[i];
-    /* (ucu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-       connection point left out */
-    const real ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z;
-    const real ucu_N_2_o_in_axes2_y = ucu_mu_2_o_in_axes2_y +
-        v.ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x - v.ucu_c_4*ucu_mu_4_o_in_axes4_y;
-    const real ucu_N_2_o_in_axes2_z = ucu_mu_2_o_in_axes2_z + v.ucu_c_4*ucu_mu_4_o_in_axes4_x
-        + v.ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y;
-    /* (ucu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real ucu_G_m1_o_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z;
-    /* (ucu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real ucu_c_o_t = v.inv_ucu_root_2*(ucu_G_m1_o_t*v.ucu_n_m1_in_axes2_z +
-        ucu_N_2_o_in_axes2_z);
-    const real ucu_c_o_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*ucu_qd_4_t -
-        ucu_N_2_o_in_axes2_x*v.ucu_e_1_in_axes4_z + ucu_N_2_o_in_axes2_y*v.ucu_c_2 -
-        ucu_c_o_t*v.ucu_v_1_t_2);
-    const real ucu_c_o_in_axes4_x = m->ucu_h_4_in_spec4_y[i]*(ucu_phi_4_o_t_2 + ucu_mu_4_o_t)
-        - ucu_B_4_o_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
-        ucu_B_4_o_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_o_t*v.ucu_e_2_in_axes4_y +
-        v.ucu_c_4*ucu_c_o_t_2;
-    const real ucu_c_o_in_axes4_y = m->ucu_h_4_in_spec4_z[i]*(ucu_phi_4_o_t + ucu_mu_4_o_t) -
-        ucu_B_4_o_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] -
-        ucu_B_4_o_in_axes4_yz*m->ucu_h_4_in_spec4_x[i] + v.ucu_c_4*ucu_c_o_t +
-        ucu_c_o_t_2*v.ucu_e_2_in_axes4_y;
-    /* (ucu-c_m_o) remainder of: moment of the leg on the platform without actuation */
-    const real ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*v.ucu_n_m1_in_axes4_x;
-    /* (ucu-U) velocity and gravity terms of the leg force */
-    const real ucu_U_x = ucu_phi_4_o_in_axes4_z*v.ucu_w_3_x -
-        axis_x_ucu_axes4_x*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_x*ucu_c_o_in_axes4_y;
-    const real ucu_U_y = ucu_phi_4_o_in_axes4_z*v.ucu_w_3_y -
-        axis_x_ucu_axes4_y*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_y*ucu_c_o_in_axes4_y;
-    const real ucu_U_z = ucu_phi_4_o_in_axes4_z*v.ucu_w_3_z -
-        axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_z*ucu_c_o_in_axes4_y;
-    /* (Z_a) rotational part of Z */
-    const real ucu_Z_a_t = ucu_mu_4_o_in_axes4_z*v.ucu_w_3_x -
-        axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x + ucu_U_z*v.ucu_q_y - ucu_U_y*v.ucu_q_z;
-    const real ucu_Z_a_t_2 = ucu_mu_4_o_in_axes4_z*v.ucu_w_3_y -
-        axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x + ucu_U_x*v.ucu_q_z - ucu_U_z*v.ucu_q_x;
-    const real ucu_Z_a_t_3 = ucu_mu_4_o_in_axes4_z*v.ucu_w_3_z -
-        axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x + ucu_U_y*v.ucu_q_x - ucu_U_x*v.ucu_q_y;
+    stage_ucu_Z_dynamics(m, w, i, j, V, &v);
     /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, ucu_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, ucu_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, ucu_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[3*count + k], add, ucu_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, ucu_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, ucu_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_6) >
+    gather(&terms[0*count + k], add, v.ucu_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.ucu_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.ucu_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v.ucu_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v.ucu_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v.ucu_Z_a_t_3);  /* Z_a_z_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
+        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
         LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_root_2) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
+        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
         LEAST_4);
 }
 
-INLINE void Z_place_ucu(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_ucu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
-    const real Z_p_x = s[9*w + k];
+    const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[10*w + k];
+    const real Z_p_y = s[19*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[11*w + k];
+    const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[12*w + k];
+    const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[13*w + k];
+    const real Z_q_y = s[22*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[14*w + k];
+    const real Z_q_z = s[23*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
@@ -3521,9 +3011,9 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_ucu[6*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[LEGS(LEGS_OF_ucu)] = {0};
     values v;
     Z_before(m, 1, 0, X, &v, s, t);
@@ -3540,10 +3030,10 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_ucu[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3566,7 +3056,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 
 /* ---- H ---- */
 INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3587,22 +3077,22 @@ INLINE void H_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
     /* (ucu-w_3) force part of reciprocal wrench 3 */
-    o[0*count + k] = v.ucu_w_3_x;
-    o[1*count + k] = v.ucu_w_3_y;
-    o[2*count + k] = v.ucu_w_3_z;
+    o[0*count + k] = v.axis_z_ucu_axes4_x;
+    o[1*count + k] = v.axis_z_ucu_axes4_y;
+    o[2*count + k] = v.axis_z_ucu_axes4_z;
     /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
     o[3*count + k] = v.ucu_H_a_3_x;
     o[4*count + k] = v.ucu_H_a_3_y;
     o[5*count + k] = v.ucu_H_a_3_z;
-    o[7*count + k] = (v.ucu_w_3_x + (v.ucu_w_3_y + v.ucu_w_3_z)) + (v.ucu_H_a_3_x +
-        (v.ucu_H_a_3_y + v.ucu_H_a_3_z));
-    o[6*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_2) >
+    o[7*count + k] = (v.axis_z_ucu_axes4_x + (v.axis_z_ucu_axes4_y + v.axis_z_ucu_axes4_z)) +
+        (v.ucu_H_a_3_x + (v.ucu_H_a_3_y + v.ucu_H_a_3_z));
+    o[6*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
+        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_12) >
         LEAST_4);
 }
 
 INLINE void H_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -3614,9 +3104,9 @@ INLINE void H_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[7*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ucu[8*LEGS(LEGS_OF_ucu)] = {0};
     values v;
     H_before(m, 1, 0, X, &v, s, t);
@@ -3628,9 +3118,10 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_ucu[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3647,10 +3138,12 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3660,20 +3153,21 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
-    /* (W_p) centripetal tensor of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real W_p_xy = omega_x*omega_y;
-    const real omega_z = V[5*w + k];
-    const real W_p_xz = omega_x*omega_z;
-    const real W_p_yz = omega_y*omega_z;
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -3685,28 +3179,31 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
     const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
-    const real f_p_t = omega_x*omega_x;
-    const real f_p_t_2 = omega_y*omega_y;
-    const real f_p_t_3 = omega_z*omega_z;
+    const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
+        v->W_p_t_4*v->h_star_x;
+    const real f_p_y = a_t_y*m->m_star + v->B_p_yx*v->h_star_x + v->B_p_yz*v->h_star_z -
+        v->W_p_t_5*v->h_star_y;
+    const real f_p_z = a_t_z*m->m_star + v->B_p_zx*v->h_star_x + v->B_p_zy*v->h_star_y -
+        v->W_p_t_6*v->h_star_z;
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    const real mu_p_t = m->J_star_in_platform_xx*omega_in_platform_x +
+        m->J_star_in_platform_xy*omega_in_platform_y +
+        m->J_star_in_platform_xz*omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*omega_in_platform_x +
+        m->J_star_in_platform_yy*omega_in_platform_y +
+        m->J_star_in_platform_yz*omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*omega_in_platform_x +
+        m->J_star_in_platform_yz*omega_in_platform_y +
+        m->J_star_in_platform_zz*omega_in_platform_z;
+    const real alpha_x = A[3*w + k];
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
-        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
-    const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
-        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
-        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
-    /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
@@ -3714,29 +3211,29 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
         a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
+        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
         a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
+        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
         a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
     const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
         v->R_xz*mu_p_in_platform_z;
     const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
         v->R_yz*mu_p_in_platform_z;
     const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
         v->R_zz*mu_p_in_platform_z;
-    s[9*w + k] = f_p_x;
-    s[10*w + k] = f_p_y;
-    s[11*w + k] = f_p_z;
-    s[12*w + k] = mu_p_x;
-    s[13*w + k] = mu_p_y;
-    s[14*w + k] = mu_p_z;
+    s[18*w + k] = f_p_x;
+    s[19*w + k] = f_p_y;
+    s[20*w + k] = f_p_z;
+    s[21*w + k] = mu_p_x;
+    s[22*w + k] = mu_p_y;
+    s[23*w + k] = mu_p_z;
 }
 
 INLINE void required_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3747,77 +3244,20 @@ INLINE void required_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     stage_ucu_X(m, w, i, j, s, X, &v);
     stage_ucu_A_X(w, j, A, &v);
     stage_ucu_V_X(m, w, i, j, V, &v);
-    stage_ucu_A_V_X(w, j, V, &v);
+    stage_ucu_A_V_X(w, j, s, A, &v);
     stage_ucu_legs_required(m, i, &v);
-    /* (ucu-phi_4) inertia force of link 4 from its turning about its reference point */
-    const real ucu_phi_4_t = v.ucu_omega_2_in_axes4_x*v.ucu_omega_2_in_axes4_x;
-    const real ucu_phi_4_t_2 = v.ucu_omega_2_in_axes4_y*v.ucu_omega_2_in_axes4_y;
-    const real ucu_phi_4_in_axes4_z = v.ucu_B_4_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] -
-        m->ucu_h_4_in_spec4_x[i]*(ucu_phi_4_t + ucu_phi_4_t_2) +
-        v.ucu_B_4_in_axes4_zy*m->ucu_h_4_in_spec4_z[i];
-    /* (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points */
-    const real ucu_mu_4_t = v.ucu_omega_4_in_axes4_z*v.ucu_omega_4_in_axes4_z;
-    const real ucu_mu_4_in_axes4_x = v.ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
-        v.ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_x[i] +
-        m->ucu_J_4_in_spec4_xz[i]*(ucu_phi_4_t_2 - ucu_mu_4_t) +
-        v.ucu_B_4_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i] +
-        v.ucu_B_4_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] -
-        v.ucu_B_4_in_axes4_yz*m->ucu_Sigma_4_in_axes4_zz[i] -
-        v.ucu_B_4_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i];
-    const real ucu_mu_4_in_axes4_y = v.ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
-        v.ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_y[i] -
-        m->ucu_J_4_in_spec4_xy[i]*(ucu_phi_4_t - ucu_mu_4_t) +
-        v.ucu_B_4_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
-        v.ucu_B_4_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] -
-        v.ucu_B_4_in_axes4_xy*m->ucu_J_4_in_spec4_xz[i] -
-        v.ucu_B_4_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i];
-    const real ucu_mu_4_in_axes4_z = v.ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
-        v.ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_z[i] +
-        m->ucu_J_4_in_spec4_yz[i]*(ucu_phi_4_t - ucu_phi_4_t_2) +
-        v.ucu_B_4_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] +
-        v.ucu_B_4_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] -
-        v.ucu_B_4_in_axes4_xy*m->ucu_Sigma_4_in_axes4_yy[i] -
-        v.ucu_B_4_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i];
-    /* (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
-       left out */
-    const real ucu_N_2_in_axes2_x = v.ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z;
-    const real ucu_N_2_in_axes2_y = v.ucu_mu_2_in_axes2_y +
-        v.ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x - v.ucu_c_4*ucu_mu_4_in_axes4_y;
-    const real ucu_N_2_in_axes2_z = v.ucu_mu_2_in_axes2_z + v.ucu_c_4*ucu_mu_4_in_axes4_x +
-        v.ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y;
-    /* (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all
-       degrees of freedom */
-    const real ucu_G_m1_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_in_axes4_z;
     /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real ucu_c_t = v.inv_ucu_root_2*(ucu_G_m1_t*v.ucu_n_m1_in_axes2_z +
-        ucu_N_2_in_axes2_z);
-    const real ucu_c_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*v.ucu_qd_4_t_4 -
-        ucu_N_2_in_axes2_x*v.ucu_e_1_in_axes4_z + ucu_N_2_in_axes2_y*v.ucu_c_2 -
-        ucu_c_t*v.ucu_v_1_t_2);
-    const real ucu_c_in_axes4_x = m->ucu_h_4_in_spec4_y[i]*(ucu_phi_4_t_2 + ucu_mu_4_t) -
-        v.ucu_B_4_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
-        v.ucu_B_4_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_t*v.ucu_e_2_in_axes4_y +
-        v.ucu_c_4*ucu_c_t_2;
-    const real ucu_c_in_axes4_y = m->ucu_h_4_in_spec4_z[i]*(ucu_phi_4_t + ucu_mu_4_t) -
-        v.ucu_B_4_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] -
-        v.ucu_B_4_in_axes4_yz*m->ucu_h_4_in_spec4_x[i] + v.ucu_c_4*ucu_c_t +
-        ucu_c_t_2*v.ucu_e_2_in_axes4_y;
-    const real ucu_c_x = v.axis_x_ucu_axes4_x*ucu_c_in_axes4_x -
-        ucu_phi_4_in_axes4_z*v.ucu_w_3_x + v.axis_y_ucu_axes4_x*ucu_c_in_axes4_y;
-    const real ucu_c_y = v.axis_x_ucu_axes4_y*ucu_c_in_axes4_x -
-        ucu_phi_4_in_axes4_z*v.ucu_w_3_y + v.axis_y_ucu_axes4_y*ucu_c_in_axes4_y;
-    const real ucu_c_z = v.axis_x_ucu_axes4_z*ucu_c_in_axes4_x -
-        ucu_phi_4_in_axes4_z*v.ucu_w_3_z + v.axis_y_ucu_axes4_z*ucu_c_in_axes4_y;
-    /* (ucu-c_m) moment of the leg on the platform without actuation */
-    const real ucu_c_m_in_axes4_x = ucu_G_m1_t*v.ucu_n_m1_in_axes4_x;
+    const real ucu_c_x = v.axis_x_ucu_axes4_x*v.ucu_c_in_axes4_x -
+        v.axis_z_ucu_axes4_x*v.ucu_phi_4_in_axes4_z + v.axis_y_ucu_axes4_x*v.ucu_c_in_axes4_y;
+    const real ucu_c_y = v.axis_x_ucu_axes4_y*v.ucu_c_in_axes4_x -
+        v.axis_z_ucu_axes4_y*v.ucu_phi_4_in_axes4_z + v.axis_y_ucu_axes4_y*v.ucu_c_in_axes4_y;
+    const real ucu_c_z = v.axis_x_ucu_axes4_z*v.ucu_c_in_axes4_x -
+        v.axis_z_ucu_axes4_z*v.ucu_phi_4_in_axes4_z + v.axis_y_ucu_axes4_z*v.ucu_c_in_axes4_y;
     /* (R_a) moment that actuators and external wrench must give */
-    const real ucu_R_a_t = ucu_mu_4_in_axes4_z*v.ucu_w_3_x -
-        v.axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x + ucu_c_y*v.ucu_q_z - ucu_c_z*v.ucu_q_y;
-    const real ucu_R_a_t_2 = ucu_mu_4_in_axes4_z*v.ucu_w_3_y -
-        v.axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x + ucu_c_z*v.ucu_q_x - ucu_c_x*v.ucu_q_z;
-    const real ucu_R_a_t_3 = ucu_mu_4_in_axes4_z*v.ucu_w_3_z -
-        v.axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x + ucu_c_x*v.ucu_q_y - ucu_c_y*v.ucu_q_x;
+    const real ucu_R_a_t = ucu_c_y*v.ucu_q_z - v.ucu_c_m_x - ucu_c_z*v.ucu_q_y;
+    const real ucu_R_a_t_2 = ucu_c_z*v.ucu_q_x - v.ucu_c_m_y - ucu_c_x*v.ucu_q_z;
+    const real ucu_R_a_t_3 = ucu_c_x*v.ucu_q_y - v.ucu_c_m_z - ucu_c_y*v.ucu_q_x;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, ucu_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, ucu_c_y);  /* R_t_y_of_legs */
@@ -3827,22 +3267,22 @@ INLINE void required_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[4*count + k], add, ucu_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, ucu_R_a_t_3);  /* R_a_z_of_legs */
     /* (ucu-w_3) force part of reciprocal wrench 3 */
-    o[0*count + k] = v.ucu_w_3_x;
-    o[1*count + k] = v.ucu_w_3_y;
-    o[2*count + k] = v.ucu_w_3_z;
+    o[0*count + k] = v.axis_z_ucu_axes4_x;
+    o[1*count + k] = v.axis_z_ucu_axes4_y;
+    o[2*count + k] = v.axis_z_ucu_axes4_z;
     /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
     o[3*count + k] = v.ucu_H_a_3_x;
     o[4*count + k] = v.ucu_H_a_3_y;
     o[5*count + k] = v.ucu_H_a_3_z;
-    o[6*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_6) >
+    o[6*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
+        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
         LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_root_2) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
+        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
         LEAST_4);
 }
 
 INLINE void required_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -3857,23 +3297,23 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 {
     /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
-    const real f_p_x = s[9*w + k];
+    const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
-    const real f_p_y = s[10*w + k];
+    const real f_p_y = s[19*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
     const real R_t_z_of_legs = sums[2*w + k];
-    const real f_p_z = s[11*w + k];
+    const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
-    const real mu_p_x = s[12*w + k];
+    const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
-    const real mu_p_y = s[13*w + k];
+    const real mu_p_y = s[22*w + k];
     const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
-    const real mu_p_z = s[14*w + k];
+    const real mu_p_z = s[23*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
@@ -3886,12 +3326,12 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_ucu[6*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[7*LEGS(LEGS_OF_ucu)] = {0};
     values v;
-    required_before(m, 1, 0, X, &v, s, t);
+    required_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         required_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, V, A, terms_ucu, o_ucu);
     }
@@ -3906,13 +3346,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, verdict *restrict t)
+    real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_ucu[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s, t);
+        required_before(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3931,7 +3371,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 
 /* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, verdict *t)
+    *v, real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3951,30 +3391,28 @@ INLINE void inverse_kinematics_legs_ucu(const prepared *m, size_t w, size_t i, s
 {
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
-    stage_ucu_inverse_kinematics_potential(m, w, i, j, s, X, &v);
     /* (ucu-q_1) displacement of joint 1 */
-    const real ucu_q_1 = angle(v.ucu_s_1, v.ucu_c_1);
+    const real ucu_q_1 = angle(v.ucu_h_4_t_10, v.ucu_h_4_t_9);
     /* (ucu-q_2) displacement of joint 2 */
-    const real ucu_q_2 = angle(-v.ucu_e_1_in_axes4_z, v.ucu_c_2);
+    const real ucu_q_2 = angle(-v.ucu_e_1_in_axes4_z, v.ucu_h_4_t_13);
     /* (ucu-q_4) displacement of joint 4 */
-    const real ucu_q_4 = angle(-v.inv_ucu_root_4*v.ucu_root_4_t_4,
-        v.inv_ucu_root_4*v.ucu_end_p1_in_turn4_x);
+    const real ucu_q_4 = angle(-v.ucu_e_2_in_axes4_y, v.ucu_e_2_in_axes4_x);
     /* (ucu-q_1) */
     o[0*count + k] = ucu_q_1;
     /* (ucu-q_2) */
     o[1*count + k] = ucu_q_2;
     /* (ucu-q_3) displacement of joint 3 */
-    o[2*count + k] = v.ucu_root_2;
+    o[2*count + k] = v.ucu_h_4_t_12;
     /* (ucu-q_4) */
     o[3*count + k] = ucu_q_4;
-    o[5*count + k] = (ucu_q_1 + ucu_q_2) + (v.ucu_root_2 + ucu_q_4);
-    o[4*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_5) >
+    o[5*count + k] = (ucu_q_1 + ucu_q_2) + (v.ucu_h_4_t_12 + ucu_q_4);
+    o[4*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
+        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
         LEAST_2);
 }
 
 INLINE void inverse_kinematics_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[4*i*w + k] = o[0*count + at];
     q[(1 + 4*i)*w + k] = o[1*count + at];
@@ -3984,9 +3422,9 @@ INLINE void inverse_kinematics_place_ucu(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[5*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
     values v;
     inverse_kinematics_before(m, 1, 0, X, &v, s, t);
@@ -3999,9 +3437,9 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_ucu[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -4019,7 +3457,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 
 /* ---- joint_rates ---- */
 INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, verdict *t)
+    real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4039,58 +3477,25 @@ INLINE void joint_rates_legs_ucu(const prepared *m, size_t w, size_t i, size_t j
 {
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
-    /* (ucu-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real ucu_S_dot_x = t_dot_x + omega_y*v.ucu_q_z - omega_z*v.ucu_q_y;
-    const real omega_x = V[3*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real ucu_S_dot_y = t_dot_y + omega_z*v.ucu_q_x - omega_x*v.ucu_q_z;
-    const real t_dot_z = V[2*w + j];
-    const real ucu_S_dot_z = t_dot_z + omega_x*v.ucu_q_y - omega_y*v.ucu_q_x;
-    const real ucu_S_dot_t = ucu_S_dot_x*m->ucu_base_frame_xx[i] +
-        ucu_S_dot_y*m->ucu_base_frame_yx[i] + ucu_S_dot_z*m->ucu_base_frame_zx[i];
-    const real ucu_S_dot_t_2 = ucu_S_dot_x*m->ucu_base_frame_xy[i] +
-        ucu_S_dot_y*m->ucu_base_frame_yy[i] + ucu_S_dot_z*m->ucu_base_frame_zy[i];
-    const real ucu_S_dot_t_3 = ucu_S_dot_x*m->ucu_base_frame_xz[i] +
-        ucu_S_dot_y*m->ucu_base_frame_yz[i] + ucu_S_dot_z*m->ucu_base_frame_zz[i];
-    const real ucu_S_dot_t_4 = ucu_S_dot_t*v.ucu_c_1 + ucu_S_dot_t_2*v.ucu_s_1;
-    const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_3*v.ucu_e_1_in_axes4_z +
-        ucu_S_dot_t_4*v.ucu_c_2;
+    stage_ucu_V_X(m, w, i, j, V, &v);
     /* (ucu-qd_1) rate of joint 1 */
-    const real ucu_qd_1 = (ucu_S_dot_t_2*v.ucu_c_1 -
-        ucu_S_dot_t*v.ucu_s_1)/v.ucu_v_1_in_axes2_z;
+    o[0*count + k] = v.ucu_qd_1;
     /* (ucu-qd_2) rate of joint 2 */
-    const real ucu_qd_2 = v.inv_ucu_root_2*(ucu_S_dot_t_4*v.ucu_e_1_in_axes4_z -
-        ucu_S_dot_t_3*v.ucu_c_2 + ucu_qd_1*(v.ucu_c_4*v.ucu_v_1_in_axes4_y -
-        v.ucu_e_2_in_axes4_y*v.ucu_v_1_in_axes4_x));
-    /* (ucu-qd_4) rate of joint 4 */
-    const real ucu_qd_4_t_5 = v.ucu_n_m1_in_axes4_x*(omega_x*(v.axis_y_ucu_axes4_y*v.ucu_w_3_z
-        - v.axis_y_ucu_axes4_z*v.ucu_w_3_y) + omega_y*(v.axis_y_ucu_axes4_z*v.ucu_w_3_x -
-        v.axis_y_ucu_axes4_x*v.ucu_w_3_z) + omega_z*(v.axis_y_ucu_axes4_x*v.ucu_w_3_y -
-        v.axis_y_ucu_axes4_y*v.ucu_w_3_x));
-    const real ucu_qd_4 = omega_x*v.ucu_w_3_x + omega_y*v.ucu_w_3_y + omega_z*v.ucu_w_3_z -
-        (ucu_qd_4_t_5 + ucu_qd_1*v.ucu_qd_4_t_4 -
-        v.ucu_c_4*v.ucu_n_m1_in_axes4_x*ucu_qd_2)/v.ucu_end_p1_in_axes4_x;
-    /* (ucu-qd_1) */
-    o[0*count + k] = ucu_qd_1;
-    /* (ucu-qd_2) */
-    o[1*count + k] = ucu_qd_2;
+    o[1*count + k] = v.ucu_qd_2;
     /* (ucu-qd_3) rate of joint 3 */
-    o[2*count + k] = ucu_S_dot_in_axes2_x;
-    /* (ucu-qd_4) */
-    o[3*count + k] = ucu_qd_4;
-    o[5*count + k] = (ucu_qd_1 + ucu_qd_2) + (ucu_S_dot_in_axes2_x + ucu_qd_4);
-    o[4*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_6) >
+    o[2*count + k] = v.ucu_S_dot_in_axes2_x;
+    /* (ucu-qd_4) rate of joint 4 */
+    o[3*count + k] = v.ucu_qd_4_2;
+    o[5*count + k] = (v.ucu_qd_1 + v.ucu_qd_2) + (v.ucu_S_dot_in_axes2_x + v.ucu_qd_4_2);
+    o[4*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
+        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
         LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_root_2) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
+        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
         LEAST_4);
 }
 
 INLINE void joint_rates_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[4*i*w + k] = o[0*count + at];
     qd[(1 + 4*i)*w + k] = o[1*count + at];
@@ -4100,9 +3505,10 @@ INLINE void joint_rates_place_ucu(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[5*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
     values v;
     joint_rates_before(m, 1, 0, X, &v, s, t);
@@ -4115,9 +3521,9 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_ucu[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -4134,10 +3540,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
+    real *V, const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -4147,6 +3555,15 @@ INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, co
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -4157,53 +3574,27 @@ INLINE void joint_accelerations_legs_ucu(const prepared *m, size_t w, size_t i, 
     stage_ucu_X(m, w, i, j, s, X, &v);
     stage_ucu_A_X(w, j, A, &v);
     stage_ucu_V_X(m, w, i, j, V, &v);
-    stage_ucu_A_V_X(w, j, V, &v);
-    /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
-    const real ucu_beta_4_in_axes4_x = v.ucu_omega_2_in_axes4_y*v.ucu_qd_4 - v.ucu_zeta_2_t;
+    stage_ucu_A_V_X(w, j, s, A, &v);
     /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
-    const real ucu_rel_in_axes4_x = v.axis_x_ucu_axes4_x*v.ucu_S_ddot_x +
-        v.axis_x_ucu_axes4_y*v.ucu_S_ddot_y + v.axis_x_ucu_axes4_z*v.ucu_S_ddot_z -
-        v.ucu_bias_in_axes4_x;
-    const real ucu_rel_in_axes4_y = v.axis_y_ucu_axes4_x*v.ucu_S_ddot_x +
-        v.axis_y_ucu_axes4_y*v.ucu_S_ddot_y + v.axis_y_ucu_axes4_z*v.ucu_S_ddot_z -
-        v.ucu_bias_in_axes4_y;
-    const real ucu_rel_in_axes4_z = v.ucu_S_ddot_x*v.ucu_w_3_x + v.ucu_S_ddot_y*v.ucu_w_3_y +
-        v.ucu_S_ddot_z*v.ucu_w_3_z +
-        v.ucu_root_2*(v.ucu_omega_2_in_axes4_x*v.ucu_omega_2_in_axes4_x +
-        v.ucu_omega_2_in_axes4_y*v.ucu_omega_2_in_axes4_y);
-    /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*v.ucu_n_m1_in_axes4_x -
-        v.ucu_end_p1_in_axes4_x*v.ucu_omega_1_in_axes2_y*v.ucu_qd_2;
-    const real ucu_nu_1 = -ucu_nu_1_t - v.ucu_nu_1_t_2;
-    /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real ucu_etad_1 = v.ucu_etad_1_t + ucu_nu_1;
+    const real ucu_rel_in_axes4_z = v.ucu_S_ddot_in_axes4_z + v.ucu_W_2_t_3*v.ucu_h_4_t_12;
     /* (ucu-qdd_1) acceleration of joint 1 */
-    const real ucu_qdd_1 = v.inv_ucu_v_1_in_axes2_z*(v.ucu_c_4*ucu_rel_in_axes4_x +
-        v.ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y);
+    o[0*count + k] = v.ucu_qdd_1;
     /* (ucu-qdd_2) acceleration of joint 2 */
-    const real ucu_qdd_2 = v.inv_ucu_root_2*(v.ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x -
-        v.ucu_c_4*ucu_rel_in_axes4_y + ucu_qdd_1*v.ucu_v_1_t_2);
-    /* (ucu-qdd_4) acceleration of joint 4 */
-    const real ucu_qdd_4_t = v.inv_ucu_end_p1_in_axes4_x*(v.ucu_qd_4_t_4*ucu_qdd_1 +
-        ucu_etad_1 - v.ucu_n_m1_in_axes2_z*ucu_qdd_2);
-    /* (ucu-qdd_1) */
-    o[0*count + k] = ucu_qdd_1;
-    /* (ucu-qdd_2) */
-    o[1*count + k] = ucu_qdd_2;
+    o[1*count + k] = v.ucu_qdd_2;
     /* (ucu-qdd_3) acceleration of joint 3 */
     o[2*count + k] = ucu_rel_in_axes4_z;
-    /* (ucu-qdd_4) */
-    o[3*count + k] = -ucu_qdd_4_t;
-    o[5*count + k] = (ucu_qdd_1 + ucu_qdd_2) + (ucu_rel_in_axes4_z + ucu_qdd_4_t);
-    o[4*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_6) >
+    /* (ucu-qdd_4) acceleration of joint 4 */
+    o[3*count + k] = -v.ucu_qdd_4_t;
+    o[5*count + k] = (v.ucu_qdd_1 + v.ucu_qdd_2) + (ucu_rel_in_axes4_z + v.ucu_qdd_4_t);
+    o[4*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
+        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
         LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_root_2) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
+        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
         LEAST_4);
 }
 
 INLINE void joint_accelerations_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[4*i*w + k] = o[0*count + at];
     qdd[(1 + 4*i)*w + k] = o[1*count + at];
@@ -4214,12 +3605,12 @@ INLINE void joint_accelerations_place_ucu(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s, t);
+    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         joint_accelerations_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, V, A, o_ucu);
     }
@@ -4229,13 +3620,13 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_ucu[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s, t);
+        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4248,10 +3639,12 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
+    real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -4261,6 +3654,15 @@ INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, va
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -4271,105 +3673,45 @@ INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_ucu_X(m, w, i, j, s, X, &v);
     stage_ucu_A_X(w, j, A, &v);
     stage_ucu_V_X(m, w, i, j, V, &v);
-    stage_ucu_A_V_X(w, j, V, &v);
+    stage_ucu_A_V_X(w, j, s, A, &v);
     stage_ucu_legs_required(m, i, &v);
-    /* (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points */
-    const real ucu_mu_4_t = v.ucu_omega_2_in_axes4_x*v.ucu_omega_2_in_axes4_x;
-    const real ucu_mu_4_t_2 = v.ucu_omega_2_in_axes4_y*v.ucu_omega_2_in_axes4_y;
-    const real ucu_mu_4_t_3 = v.ucu_omega_4_in_axes4_z*v.ucu_omega_4_in_axes4_z;
-    const real ucu_mu_4_in_axes4_x = v.ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
-        v.ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_x[i] +
-        m->ucu_J_4_in_spec4_xz[i]*(ucu_mu_4_t_2 - ucu_mu_4_t_3) +
-        v.ucu_B_4_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i] +
-        v.ucu_B_4_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] -
-        v.ucu_B_4_in_axes4_yz*m->ucu_Sigma_4_in_axes4_zz[i] -
-        v.ucu_B_4_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i];
-    const real ucu_mu_4_in_axes4_y = v.ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
-        v.ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_y[i] -
-        m->ucu_J_4_in_spec4_xy[i]*(ucu_mu_4_t - ucu_mu_4_t_3) +
-        v.ucu_B_4_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
-        v.ucu_B_4_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] -
-        v.ucu_B_4_in_axes4_xy*m->ucu_J_4_in_spec4_xz[i] -
-        v.ucu_B_4_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i];
-    const real ucu_mu_4_in_axes4_z = v.ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
-        v.ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_z[i] +
-        m->ucu_J_4_in_spec4_yz[i]*(ucu_mu_4_t - ucu_mu_4_t_2) +
-        v.ucu_B_4_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] +
-        v.ucu_B_4_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] -
-        v.ucu_B_4_in_axes4_xy*m->ucu_Sigma_4_in_axes4_yy[i] -
-        v.ucu_B_4_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i];
-    /* (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
-       left out */
-    const real ucu_N_2_in_axes2_x = v.ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z;
-    const real ucu_N_2_in_axes2_y = v.ucu_mu_2_in_axes2_y +
-        v.ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x - v.ucu_c_4*ucu_mu_4_in_axes4_y;
-    const real ucu_N_2_in_axes2_z = v.ucu_mu_2_in_axes2_z + v.ucu_c_4*ucu_mu_4_in_axes4_x +
-        v.ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y;
-    /* (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all
-       degrees of freedom */
-    const real ucu_G_m1_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_in_axes4_z;
-    /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
-       point */
-    const real ucu_c_t = v.inv_ucu_root_2*(ucu_G_m1_t*v.ucu_n_m1_in_axes2_z +
-        ucu_N_2_in_axes2_z);
-    const real ucu_c_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*v.ucu_qd_4_t_4 -
-        ucu_N_2_in_axes2_x*v.ucu_e_1_in_axes4_z + ucu_N_2_in_axes2_y*v.ucu_c_2 -
-        ucu_c_t*v.ucu_v_1_t_2);
-    const real ucu_c_in_axes4_x = m->ucu_h_4_in_spec4_y[i]*(ucu_mu_4_t_2 + ucu_mu_4_t_3) -
-        v.ucu_B_4_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
-        v.ucu_B_4_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_t*v.ucu_e_2_in_axes4_y +
-        v.ucu_c_4*ucu_c_t_2;
-    const real ucu_c_in_axes4_y = m->ucu_h_4_in_spec4_z[i]*(ucu_mu_4_t + ucu_mu_4_t_3) -
-        v.ucu_B_4_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] -
-        v.ucu_B_4_in_axes4_yz*m->ucu_h_4_in_spec4_x[i] + v.ucu_c_4*ucu_c_t +
-        ucu_c_t_2*v.ucu_e_2_in_axes4_y;
-    /* (ucu-c_m) moment of the leg on the platform without actuation */
-    const real ucu_c_m_in_axes4_x = ucu_G_m1_t*v.ucu_n_m1_in_axes4_x;
-    const real ucu_c_m_x = v.axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x -
-        ucu_mu_4_in_axes4_z*v.ucu_w_3_x;
-    const real ucu_c_m_y = v.axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x -
-        ucu_mu_4_in_axes4_z*v.ucu_w_3_y;
-    const real ucu_c_m_z = v.axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x -
-        ucu_mu_4_in_axes4_z*v.ucu_w_3_z;
     /* (ucu-c_true) leg force on the platform without actuation, the last link's mass included */
-    const real ucu_c_true_in_axes4_x = ucu_c_in_axes4_x -
+    const real ucu_c_true_in_axes4_x = v.ucu_c_in_axes4_x -
         v.ucu_acc_4_in_axes4_x*m->ucu_link4_mass[i];
-    const real ucu_c_true_in_axes4_y = ucu_c_in_axes4_y -
+    const real ucu_c_true_in_axes4_y = v.ucu_c_in_axes4_y -
         v.ucu_acc_4_in_axes4_y*m->ucu_link4_mass[i];
-    const real ucu_c_true_in_axes4_z = m->ucu_h_4_in_spec4_x[i]*(ucu_mu_4_t + ucu_mu_4_t_2) -
-        v.ucu_acc_4_in_axes4_z*m->ucu_link4_mass[i] -
-        v.ucu_B_4_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] -
-        v.ucu_B_4_in_axes4_zy*m->ucu_h_4_in_spec4_z[i];
-    const real ucu_c_true_x = ucu_c_true_in_axes4_z*v.ucu_w_3_x +
+    const real ucu_c_true_in_axes4_z = -v.ucu_acc_4_in_axes4_z*m->ucu_link4_mass[i] -
+        v.ucu_phi_4_in_axes4_z;
+    const real ucu_c_true_x = v.axis_z_ucu_axes4_x*ucu_c_true_in_axes4_z +
         v.axis_x_ucu_axes4_x*ucu_c_true_in_axes4_x +
         v.axis_y_ucu_axes4_x*ucu_c_true_in_axes4_y;
-    const real ucu_c_true_y = ucu_c_true_in_axes4_z*v.ucu_w_3_y +
+    const real ucu_c_true_y = v.axis_z_ucu_axes4_y*ucu_c_true_in_axes4_z +
         v.axis_x_ucu_axes4_y*ucu_c_true_in_axes4_x +
         v.axis_y_ucu_axes4_y*ucu_c_true_in_axes4_y;
-    const real ucu_c_true_z = ucu_c_true_in_axes4_z*v.ucu_w_3_z +
+    const real ucu_c_true_z = v.axis_z_ucu_axes4_z*ucu_c_true_in_axes4_z +
         v.axis_x_ucu_axes4_z*ucu_c_true_in_axes4_x +
         v.axis_y_ucu_axes4_z*ucu_c_true_in_axes4_y;
     /* (ucu-c_true) */
     o[0*count + k] = ucu_c_true_x;
     o[1*count + k] = ucu_c_true_y;
     o[2*count + k] = ucu_c_true_z;
-    /* (ucu-c_m) */
-    o[3*count + k] = ucu_c_m_x;
-    o[4*count + k] = ucu_c_m_y;
-    o[5*count + k] = ucu_c_m_z;
+    /* (ucu-c_m) moment of the leg on the platform without actuation */
+    o[3*count + k] = v.ucu_c_m_x;
+    o[4*count + k] = v.ucu_c_m_y;
+    o[5*count + k] = v.ucu_c_m_z;
     /* (ucu-w_3) force part of reciprocal wrench 3 */
-    o[6*count + k] = v.ucu_w_3_x;
-    o[7*count + k] = v.ucu_w_3_y;
-    o[8*count + k] = v.ucu_w_3_z;
-    o[9*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_6) >
+    o[6*count + k] = v.axis_z_ucu_axes4_x;
+    o[7*count + k] = v.axis_z_ucu_axes4_y;
+    o[8*count + k] = v.axis_z_ucu_axes4_z;
+    o[9*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
+        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
         LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_root_2) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
+        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
         LEAST_4);
 }
 
 INLINE void legs_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[6*i*w + k] = o[0*count + at];
     leg_force[(6*i + 1)*w + k] = o[1*count + at];
@@ -4384,13 +3726,13 @@ INLINE void legs_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ucu[10*LEGS(LEGS_OF_ucu)] = {0};
     clear(actuator, 36);
     values v;
-    legs_before(m, 1, 0, X, &v, s, t);
+    legs_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         legs_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, V, A, o_ucu);
     }
@@ -4401,7 +3743,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 
 /* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4423,13 +3765,10 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
-        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
-        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
-        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
-        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
-        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
-    s[9*w + k] = potential_t;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
+        m->gravity_y*(m->m_star*t_y + v->h_star_y) + m->gravity_z*(m->m_star*t_z +
+        v->h_star_z);
+    s[18*w + k] = potential_t;
 }
 
 INLINE void potential_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4437,34 +3776,25 @@ INLINE void potential_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
-    stage_ucu_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
-    const real ucu_c_4 = v.inv_ucu_root_4*v.ucu_end_p1_in_turn4_x;
     /* (potential) */
-    const real ucu_e_2_in_axes4_y = v.inv_ucu_root_4*v.ucu_root_4_t_4;
-    const real ucu_potential_t_4 = v.ucu_c_1*m->ucu_mu_2_t[i] + m->ucu_mu_2_t_2[i]*v.ucu_s_1;
-    const real ucu_potential_t_5 = v.ucu_c_1*m->ucu_potential_t[i] +
-        m->ucu_potential_t_2[i]*v.ucu_s_1;
-    const real ucu_potential_t_6 = (v.ucu_e_1_in_axes4_z*ucu_potential_t_4 -
-        v.ucu_c_2*m->ucu_mu_2_t_3[i])*(m->ucu_h_2_in_spec2_z[i] -
-        m->ucu_link2_mass[i]*(v.ucu_e_1_in_axes4_z*ucu_potential_t_5 -
-        v.ucu_c_2*m->ucu_potential_t_3[i]) + ucu_c_4*m->ucu_h_4_in_spec4_z[i] -
-        ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_y[i]) - (v.ucu_c_2*ucu_potential_t_4 +
-        v.ucu_e_1_in_axes4_z*m->ucu_mu_2_t_3[i])*(m->ucu_h_2_in_spec2_x[i] +
-        m->ucu_h_4_in_spec4_x[i] + m->ucu_link2_mass[i]*(v.ucu_c_2*ucu_potential_t_5 +
-        v.ucu_e_1_in_axes4_z*m->ucu_potential_t_3[i])) - (v.ucu_c_1*m->ucu_mu_2_t_2[i] -
-        m->ucu_mu_2_t[i]*v.ucu_s_1)*(m->ucu_h_2_in_spec2_y[i] +
-        m->ucu_link2_mass[i]*(v.ucu_c_1*m->ucu_potential_t_2[i] -
-        m->ucu_potential_t[i]*v.ucu_s_1) + ucu_c_4*m->ucu_h_4_in_spec4_y[i] +
-        ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_z[i]);
+    const real ucu_potential_t_4 = v.ucu_h_4_t_10*m->ucu_potential_t_2[i] +
+        v.ucu_h_4_t_9*m->ucu_potential_t[i];
+    const real ucu_potential_t_5 = v.ucu_g_in_axes2_y*(m->ucu_h_2_in_spec2_z[i] -
+        m->ucu_link2_mass[i]*(v.ucu_e_1_in_axes4_z*ucu_potential_t_4 -
+        v.ucu_h_4_t_13*m->ucu_potential_t_3[i]) + v.ucu_h_4_in_spec2_z) -
+        v.ucu_g_in_axes2_x*(m->ucu_h_2_in_spec2_x[i] + m->ucu_h_4_in_spec4_x[i] +
+        m->ucu_link2_mass[i]*(v.ucu_e_1_in_axes4_z*m->ucu_potential_t_3[i] +
+        v.ucu_h_4_t_13*ucu_potential_t_4)) - v.ucu_g_in_axes2_z*(m->ucu_h_2_in_spec2_y[i] +
+        m->ucu_link2_mass[i]*(v.ucu_h_4_t_9*m->ucu_potential_t_2[i] -
+        v.ucu_h_4_t_10*m->ucu_potential_t[i]) + v.ucu_h_4_in_axes1_y);
     /* (potential) */
-    gather(&terms[0*count + k], add, ucu_potential_t_6);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_5) >
+    gather(&terms[0*count + k], add, ucu_potential_t_5);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
+        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
         LEAST_2);
 }
 
-INLINE void potential_place_ucu(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_ucu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -4473,15 +3803,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 {
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
-    const real potential_t = s[9*w + k];
+    const real potential_t = s[18*w + k];
     const real potential_ = potential_of_legs - potential_t;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[10] = {0}, sums[1] = {0};
+    real s[19] = {0}, sums[1] = {0};
     real terms_ucu[LEGS(LEGS_OF_ucu)] = {0}, o_ucu[LEGS(LEGS_OF_ucu)] = {0};
     values v;
     potential_before(m, 1, 0, X, &v, s, t);
@@ -4500,7 +3830,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4523,30 +3853,14 @@ INLINE void condition_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
-    /* (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch */
-    const real ucu_root_4_t_4 = v.inv_ucu_root_2*v.ucu_S_in_turn1_z*(v.ucu_c_1*v.ucu_root_4_t
-        + v.ucu_root_4_t_2*v.ucu_s_1) - v.ucu_c_2*v.ucu_root_4_t_3;
-    const real ucu_root_4_t_5 = v.ucu_end_p1_in_turn4_x*v.ucu_end_p1_in_turn4_x +
-        ucu_root_4_t_4*ucu_root_4_t_4;
-    const real ucu_root_4 = m->ucu_branch_4[i]*root(ucu_root_4_t_5);
-    /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
-    const real inv_ucu_root_4 = 1/ucu_root_4;
-    const real ucu_c_4 = inv_ucu_root_4*v.ucu_end_p1_in_turn4_x;
-    /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-    const real ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_4;
-    const real ucu_v_1_in_axes2_z = v.ucu_c_2*ucu_c_4*ucu_c_4*v.ucu_root_2 +
-        v.ucu_c_2*ucu_e_2_in_axes4_y*ucu_e_2_in_axes4_y*v.ucu_root_2;
-    /* (ucu-w_1) force part of reciprocal wrench 1 */
-    const real ucu_end_p1_in_axes4_x = ucu_c_4*v.ucu_end_p1_in_turn4_x +
-        ucu_e_2_in_axes4_y*ucu_root_4_t_4;
     /* (ucu-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real ucu_pivot_size = magnitude(v.ucu_root_1_t);
-    const real ucu_pivot_size_2 = magnitude(v.ucu_root_2_t);
-    const real ucu_pivot_size_3 = magnitude(ucu_root_4_t_5);
-    const real ucu_pivot_size_4 = magnitude(ucu_end_p1_in_axes4_x);
-    const real ucu_pivot_size_5 = magnitude(v.ucu_root_2);
-    const real ucu_pivot_size_6 = magnitude(ucu_v_1_in_axes2_z);
+    const real ucu_pivot_size = magnitude(v.ucu_h_4_t_7);
+    const real ucu_pivot_size_2 = magnitude(v.ucu_h_4_t_11);
+    const real ucu_pivot_size_3 = magnitude(v.ucu_h_4_t_19);
+    const real ucu_pivot_size_4 = magnitude(v.ucu_end_p1_in_axes4_x);
+    const real ucu_pivot_size_5 = magnitude(v.ucu_h_4_t_12);
+    const real ucu_pivot_size_6 = magnitude(v.ucu_v_1_in_axes2_z);
     const real ucu_least_pivots =
         lesser(lesser(lesser(lesser(lesser(R(1.25)*root(ucu_pivot_size),
         R(1.25)*root(ucu_pivot_size_2)), root(ucu_pivot_size_3)), ucu_pivot_size_4),
@@ -4560,26 +3874,26 @@ INLINE void condition_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, 
     /* (spread) */
     gather(&terms[0*count + k], add, ucu_spread_t_4);  /* spread_ucu */
     /* (ucu-w_3) force part of reciprocal wrench 3 */
-    o[0*count + k] = v.ucu_w_3_x;
-    o[1*count + k] = v.ucu_w_3_y;
-    o[2*count + k] = v.ucu_w_3_z;
+    o[0*count + k] = v.axis_z_ucu_axes4_x;
+    o[1*count + k] = v.axis_z_ucu_axes4_y;
+    o[2*count + k] = v.axis_z_ucu_axes4_z;
     /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
     o[3*count + k] = v.ucu_H_a_3_x;
     o[4*count + k] = v.ucu_H_a_3_y;
     o[5*count + k] = v.ucu_H_a_3_z;
     /* (ucu-G) */
     o[6*count + k] = ucu_least_pivots;
-    o[8*count + k] = (v.ucu_w_3_x + (v.ucu_w_3_y + v.ucu_w_3_z)) + ((v.ucu_H_a_3_x +
-        v.ucu_H_a_3_y) + (v.ucu_H_a_3_z + ucu_least_pivots));
-    o[7*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(ucu_root_4_t_5) >
-        LEAST_2) + UNLESS(magnitude(ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_root_2) > LEAST_4) + UNLESS(magnitude(ucu_v_1_in_axes2_z) >
+    o[8*count + k] = (v.axis_z_ucu_axes4_x + (v.axis_z_ucu_axes4_y + v.axis_z_ucu_axes4_z)) +
+        ((v.ucu_H_a_3_x + v.ucu_H_a_3_y) + (v.ucu_H_a_3_z + ucu_least_pivots));
+    o[7*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
+        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
+        LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
+        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
         LEAST_4);
 }
 
 INLINE void condition_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *pivots, verdict *t)
+    *o, real *H, real *pivots, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -4593,7 +3907,7 @@ INLINE void condition_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t 
 }
 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
-    *lengths, verdict *t)
+    *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_ucu = sums[0*w + k];
@@ -4604,9 +3918,9 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
-    real s[9] = {0}, sums[1] = {0};
+    real s[18] = {0}, sums[1] = {0};
     real terms_ucu[LEGS(LEGS_OF_ucu)] = {0}, o_ucu[9*LEGS(LEGS_OF_ucu)] = {0};
     clear(reach, NL);
     values v;
@@ -4627,196 +3941,179 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int hexapod_6ucu_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int hexapod_6ucu_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int hexapod_6ucu_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int hexapod_6ucu_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int hexapod_6ucu_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int hexapod_6ucu_joint_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int hexapod_6ucu_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -4998,14 +4295,9 @@ int hexapod_6ucu_inverse_dynamics(const prepared *m, const real *X, const real *
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -5020,7 +4312,7 @@ int hexapod_6ucu_inverse_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    return settled(&why, NU, tau_out);
+    return final_status(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -5028,7 +4320,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -5039,8 +4331,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_6(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
 }
 
 static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
@@ -5052,14 +4344,9 @@ int hexapod_6ucu_forward_dynamics(const prepared *m, const real *X, const real *
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
         subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -5078,7 +4365,7 @@ int hexapod_6ucu_forward_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -5087,7 +4374,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
         A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -5102,8 +4389,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_6(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int hexapod_6ucu_complete_acceleration(const prepared *m, const real *X, const real *V, const real
@@ -5113,13 +4400,11 @@ int hexapod_6ucu_complete_acceleration(const prepared *m, const real *X, const r
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int hexapod_6ucu_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -5127,49 +4412,27 @@ int hexapod_6ucu_leg_reactions(const prepared *m, const real *X, const real *V, 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
-        unsure_solve_1[1] = {0}, leg_force[6*NL] = {0}, actuator[36] = {0}, forces[NL*NL] = {0},
-        work[NV*PADDED(NV)];
-    verdict why;
+    real solve_1[NV] = {0}, leg_force[6*NL] = {0}, actuator[36] = {0}, forces[NL*NL] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, &why);
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - wrench[i];
-    }
-    eliminate_6(1, NV, order_tau, sizes_tau, H, subtract_1, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NV, 1, H, work);
-        solve_apart(NV, subtract_1, work, solve_1, why.singular);
-        check(NV, 1, solve_1, why.overflow);
-    }
+    flag_status(hexapod_6ucu_inverse_dynamics(m, X, V, A, wrench, solve_1), &why);
     legs_run(m, X, V, A, leg_force, actuator, &why);
     for (size_t i = 0; i < NL*NL; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(NL, 6, 1, places_forces, solve_1, actuator, forces);
-    check(NL*NL, 1, forces, why.overflow);
-    copy(NL*NL, forces, forces_out);
-    return settled(&why, NL*NL, forces_out);
+    return finished(NL*NL, forces, forces_out, &why);
 }
 
 int hexapod_6ucu_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -5178,8 +4441,8 @@ int hexapod_6ucu_energy(const prepared *m, const real *X, const real *V, real *k
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int hexapod_6ucu_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -5189,9 +4452,9 @@ int hexapod_6ucu_condition(const prepared *m, const real *X, real *sigma_out, re
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
         divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -5211,8 +4474,8 @@ int hexapod_6ucu_condition(const prepared *m, const real *X, real *sigma_out, re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int hexapod_6ucu_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -5222,13 +4485,12 @@ int hexapod_6ucu_manipulability(const prepared *m, const real *X, real *measure_
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
         = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -5246,8 +4508,8 @@ int hexapod_6ucu_manipulability(const prepared *m, const real *X, real *measure_
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int hexapod_6ucu_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -5257,13 +4519,12 @@ int hexapod_6ucu_singularity_distance(const prepared *m, const real *X, real *ac
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
         = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -5281,52 +4542,47 @@ int hexapod_6ucu_singularity_distance(const prepared *m, const real *X, real *ac
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[6] = {0}, gap[NU] = {0};
-    verdict why;
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[6] = {0}, residual[NU] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(6, 1, hexapod_6ucu_ACTUATED, q, q_of_inverse_kinematics_from_2);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_2[i];
+        residual[i] = q_actuated[i] - q_of_inverse_kinematics_from_2[i];
     }
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -5338,21 +4594,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -5366,17 +4622,11 @@ int hexapod_6ucu_forward_kinematics(const prepared *m, const real *q_actuated, c
     real *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int hexapod_6ucu_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5385,33 +4635,25 @@ int hexapod_6ucu_dissipation(const prepared *m, const real *X, const real *V, re
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int hexapod_6ucu_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int hexapod_6ucu_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5419,256 +4661,177 @@ int hexapod_6ucu_joint_margins(const prepared *m, const real *X, real *margins_o
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17, 18, 19, 20, 21, 22, 23};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int hexapod_6ucu_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int hexapod_6ucu_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, hexapod_6ucu_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int hexapod_6ucu_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, hexapod_6ucu_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int hexapod_6ucu_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, hexapod_6ucu_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int hexapod_6ucu_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int hexapod_6ucu_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
-    check(9, 1, R, why.overflow);
-    copy(9, R, R_out);
-    return settled(&why, 9, R_out);
+    return finished(9, R, R_out, &why);
 }
 
 int hexapod_6ucu_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(R, 9);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(9, 1, R, why.invalid);
-    }
+    check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int hexapod_6ucu_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const V_from_3 = V + 3;
     const real *const X_from_3 = X + 3;
     quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
-    const real *const V_from_0 = V;
-    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    beside(1, 3, 4, V, quaternion_rate_1, X_dot);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int hexapod_6ucu_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(rpy, 3);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(3, 1, rpy, why.invalid);
-    }
+    check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int hexapod_6ucu_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
-    const real *const X_from_0 = X;
+    check_two(NQ, X, NV, step, why.invalid);
     const real *const X_from_3 = X + 3;
-    const real *const step_from_0 = step;
     const real *const step_from_3 = step + 3;
     turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X_from_0[i] + step_from_0[i];
+        add_1[i] = X[i] + step[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int hexapod_6ucu_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
+    check_two(NQ, X0, NQ, X1, why.invalid);
     const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
     const real *const X1_from_3 = X1 + 3;
     turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
+        subtract_1[i] = X1[i] - X0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int hexapod_6ucu_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
-        turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
-    verdict why;
+    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
-    const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
-    const real *const X1_from_3 = X1 + 3;
-    turn_between(X0_from_3, X1_from_3, turn_between_1);
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
-    }
-    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(hexapod_6ucu_difference(X0, X1, join_1), &why);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const X0_from_0_2 = X0;
     const real *const X0_from_3_2 = X0 + 3;
-    const real *const scale_1_from_0 = scale_1;
     const real *const scale_1_from_3 = scale_1 + 3;
     turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
+        add_1[i] = X0[i] + scale_1[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

@@ -144,7 +144,7 @@ int hexapod_6ucu_M(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, 
 size_t hexapod_6ucu_M_batch(const hexapod_6ucu_model *model, size_t n, const hexapod_6ucu_real *X,
     hexapod_6ucu_real *M, int *status);
 
-/* Velocity and gravity terms Z. 2109 mul, 1530 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 2118 mul, 1536 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hexapod_6ucu_Z(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *Z);
@@ -165,14 +165,14 @@ int hexapod_6ucu_inverse_kinematics(const hexapod_6ucu_model *model, const hexap
 size_t hexapod_6ucu_inverse_kinematics_batch(const hexapod_6ucu_model *model, size_t n, const
     hexapod_6ucu_real *X, hexapod_6ucu_real *q, int *status);
 
-/* Rates of all joints. 876 mul, 528 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 888 mul, 528 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int hexapod_6ucu_joint_rates(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *rates);
 size_t hexapod_6ucu_joint_rates_batch(const hexapod_6ucu_model *model, size_t n, const
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *rates, int *status);
 
-/* Accelerations of all joints. 1356 mul, 864 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 1344 mul, 855 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hexapod_6ucu_joint_accelerations(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
     const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, hexapod_6ucu_real *accelerations);
@@ -180,7 +180,7 @@ size_t hexapod_6ucu_joint_accelerations_batch(const hexapod_6ucu_model *model, s
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A,
     hexapod_6ucu_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 3783 mul, 2703 add, 30 div, 18 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 3756 mul, 2685 add, 30 div, 18 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexapod_6ucu_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *M, hexapod_6ucu_real *Z, hexapod_6ucu_real *H);
@@ -188,7 +188,7 @@ size_t hexapod_6ucu_dynamics_batch(const hexapod_6ucu_model *model, size_t n, co
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *M, hexapod_6ucu_real *Z,
     hexapod_6ucu_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 2205 mul, 1641 add, 30 div, 18 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 2187 mul, 1623 add, 30 div, 18 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hexapod_6ucu_inverse_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
@@ -198,7 +198,7 @@ size_t hexapod_6ucu_inverse_dynamics_batch(const hexapod_6ucu_model *model, size
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const
     hexapod_6ucu_real *wrench, hexapod_6ucu_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 3783 mul, 2703 add, 30 div, 18
+/* Acceleration A under the actuator forces tau and the wrench. 3756 mul, 2685 add, 30 div, 18
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexapod_6ucu_forward_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
@@ -219,7 +219,7 @@ size_t hexapod_6ucu_complete_acceleration_batch(const hexapod_6ucu_model *model,
     hexapod_6ucu_real *wrench, hexapod_6ucu_real *completed, int *status);
 
 /* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
-   give the forces of inverse_dynamics. 2058 mul, 1488 add, 30 div, 18 sqrt, 0 trig; inverse
+   give the forces of inverse_dynamics. 2046 mul, 1479 add, 30 div, 18 sqrt, 0 trig; inverse
    dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 6). */
 int hexapod_6ucu_leg_reactions(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const hexapod_6ucu_real *wrench,
@@ -306,14 +306,14 @@ int hexapod_6ucu_actuator_positions(const hexapod_6ucu_model *model, const hexap
 size_t hexapod_6ucu_actuator_positions_batch(const hexapod_6ucu_model *model, size_t n, const
     hexapod_6ucu_real *X, hexapod_6ucu_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 876 mul, 528 add, 30 div, 18 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 888 mul, 528 add, 30 div, 18 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int hexapod_6ucu_actuator_rates(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *rates);
 size_t hexapod_6ucu_actuator_rates_batch(const hexapod_6ucu_model *model, size_t n, const
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 1356 mul, 864 add, 30 div, 18 sqrt,
+/* Accelerations of the actuated joints, in the order of tau. 1344 mul, 855 add, 30 div, 18 sqrt,
    0 trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hexapod_6ucu_actuator_accelerations(const hexapod_6ucu_model *model, const hexapod_6ucu_real
     *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, hexapod_6ucu_real *accelerations);

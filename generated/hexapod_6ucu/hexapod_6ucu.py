@@ -705,9 +705,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_ucu,
         (ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yy, ucu_J_2_in_spec2_yz,
@@ -750,9 +750,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_ucu,
         (ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yz, ucu_J_4_in_spec4_xy,
@@ -1549,11 +1549,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1810,8 +1810,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1819,7 +1819,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1827,11 +1827,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1879,15 +1879,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 3783 mul, 2703 add, 30 div, 18 sqrt, 0 trig
+# dynamics: 3756 mul, 2685 add, 30 div, 18 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1969,39 +1968,12 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_ucu_xx, M_tt_xy, M_tt_xz, M_tt_ucu_yy, M_tt_yz, M_tt_ucu_zz, M_ta_xx, M_ta_ucu_xy,
         M_ta_ucu_xz, M_ta_ucu_yx, M_ta_t, M_ta_ucu_yz, M_ta_ucu_zx, M_ta_ucu_zy, M_ta_zz,
@@ -2088,6 +2060,9 @@ def _run_dynamics(m, X, V):
         inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
         ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
         ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
+        ucu_h_4_in_axes1_y = (
+        ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y + ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z
+        )
         ucu_h_4_in_spec2_z = (
         ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_z - ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y
         )
@@ -2198,8 +2173,14 @@ def _run_dynamics(m, X, V):
             ucu_S_dot_t_6*ucu_h_4_t_13)
         )
         # (ucu-qd_4) rate of joint 4
-        ucu_qd_4 = (
-        -inv_ucu_end_p1_in_axes4_x*(ucu_eta_1 + ucu_qd_1*ucu_w_4_t - ucu_n_m1_in_axes2_z*ucu_qd_2)
+        ucu_qd_4_t = ucu_qd_1*ucu_w_4_t
+        ucu_qd_4_t_2 = ucu_n_m1_in_axes2_z*ucu_qd_2
+        ucu_qd_4 = -inv_ucu_end_p1_in_axes4_x*(ucu_eta_1 + ucu_qd_4_t - ucu_qd_4_t_2)
+        ucu_omega_in_axes4_x = (
+        axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
+        )
+        ucu_omega_in_axes4_z = (
+        axis_z_ucu_axes4_x*omega_x + axis_z_ucu_axes4_y*omega_y + axis_z_ucu_axes4_z*omega_z
         )
         # (ucu-omega_1) angular velocity of link 1
         ucu_omega_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qd_1
@@ -2215,7 +2196,10 @@ def _run_dynamics(m, X, V):
         ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
         ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
         ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y
+        ucu_W_2_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_W_2_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
         ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y
+        ucu_W_2_t_3 = ucu_W_2_t + ucu_W_2_t_2
         # (ucu-omega_4) angular velocity of link 4
         ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4
         # (ucu-W_4) centripetal tensor of link 4
@@ -2254,35 +2238,28 @@ def _run_dynamics(m, X, V):
         ucu_end_p1_in_axes4_y = (
         ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_e_2_in_axes4_x*ucu_h_4_t_18
         )
-        ucu_omega_in_axes4_x = (
-        axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
-        )
         ucu_omega_in_axes4_y = (
         axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
         )
-        ucu_omega_in_axes4_z = (
-        axis_z_ucu_axes4_x*omega_x + axis_z_ucu_axes4_y*omega_y + axis_z_ucu_axes4_z*omega_z
+        ucu_nd_m1_t = (
+        ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y - ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z
         )
         ucu_nd_m1_in_axes4_x = (
         ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
             ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x
         )
-        ucu_nd_m1_in_axes4_z = (
-        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z
-            - ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y
-        )
+        ucu_nd_m1_in_axes4_z = -ucu_nd_m1_t - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z
         # (ucu-nu_1) bias of the angular acceleration along moment direction 1
-        ucu_nu_1_t = (
-        ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x - ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x
+        ucu_nu_1_t = ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_nu_1_t_2 = -ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x
+        ucu_nu_1_t_3 = ucu_nu_1_t_2 + ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_nu_1_t_4 = ucu_omega_2_in_axes4_y - ucu_omega_in_axes4_y
+        ucu_nu_1_t_5 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x)
+        ucu_nu_1_t_6 = (
+        ucu_nu_1_t_5 + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z - ucu_omega_in_axes4_z) +
+            ucu_nu_1_t_4*(ucu_nu_1_t + ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
         )
-        ucu_nu_1_t_2 = (
-        ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x) +
-            ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z - ucu_omega_in_axes4_z) +
-            (ucu_omega_2_in_axes4_y -
-            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
-            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
-        )
-        ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
+        ucu_nu_1 = -ucu_nu_1_t_3 - ucu_nu_1_t_6
         # (ucu-qdd_1_o) remainder of: acceleration of joint 1
         ucu_qdd_1_o = (
         inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
@@ -2326,26 +2303,29 @@ def _run_dynamics(m, X, V):
         ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x
         ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y
         ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x
+        # (ucu-acc_4) acceleration of the reference point of link 4, less gravity
+        ucu_g_in_axes4_x = (
+        axis_x_ucu_axes4_x*gravity_x + axis_x_ucu_axes4_y*gravity_y + axis_x_ucu_axes4_z*gravity_z
+        )
+        ucu_g_in_axes4_y = (
+        axis_y_ucu_axes4_x*gravity_x + axis_y_ucu_axes4_y*gravity_y + axis_y_ucu_axes4_z*gravity_z
+        )
+        ucu_g_in_axes4_z = (
+        axis_z_ucu_axes4_x*gravity_x + axis_z_ucu_axes4_y*gravity_y + axis_z_ucu_axes4_z*gravity_z
+        )
         # (ucu-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
-        ucu_acc_4_o_in_axes4_x = (
-        ucu_u_1_in_axes4_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
-            axis_x_ucu_axes4_z*gravity_z
-        )
-        ucu_acc_4_o_in_axes4_y = (
-        ucu_u_1_in_axes4_y - axis_y_ucu_axes4_x*gravity_x - axis_y_ucu_axes4_y*gravity_y -
-            axis_y_ucu_axes4_z*gravity_z
-        )
+        ucu_acc_4_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_g_in_axes4_x
+        ucu_acc_4_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_g_in_axes4_y
         ucu_acc_4_o_in_axes4_z = (
         axis_z_ucu_axes4_x*ucu_u_1_x + axis_z_ucu_axes4_y*ucu_u_1_y + axis_z_ucu_axes4_z*ucu_u_1_z
-            - axis_z_ucu_axes4_x*gravity_x - axis_z_ucu_axes4_y*gravity_y -
-            axis_z_ucu_axes4_z*gravity_z
+            - ucu_g_in_axes4_z
         )
+        # (ucu-phi_4) inertia force of link 4 from its turning about its reference point
+        ucu_phi_4_t = ucu_W_2_t_3*ucu_h_4_in_spec4_x
         # (ucu-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
-        ucu_phi_4_o_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
-        ucu_phi_4_o_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
         ucu_phi_4_o_in_axes4_z = (
         ucu_B_4_o_in_axes4_zx*ucu_h_4_in_spec4_y + ucu_B_4_o_in_axes4_zy*ucu_h_4_in_spec4_z -
-            ucu_h_4_in_spec4_x*(ucu_phi_4_o_t + ucu_phi_4_o_t_2)
+            ucu_phi_4_t
         )
         # (ucu-D_1_4) inertia of joint 4 along joint 1
         ucu_D_1_4 = (
@@ -2366,11 +2346,13 @@ def _run_dynamics(m, X, V):
             ucu_h_4_t_13*(ucu_Jc_2_t_3*ucu_e_2_in_axes4_x - ucu_J_2_in_spec2_yz -
             ucu_Jc_2_t_4*ucu_e_2_in_axes4_y)
         )
+        # (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        ucu_mu_4_t = ucu_J_4_in_spec4_yz*(ucu_W_2_t - ucu_W_2_t_2)
         # (ucu-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their reference points
         ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z
         ucu_mu_4_o_in_axes4_x = (
         ucu_B_4_o_in_axes4_yx*ucu_J_4_in_spec4_xy + ucu_B_4_o_in_axes4_zy*ucu_Sigma_4_in_axes4_yy
-            + ucu_J_4_in_spec4_xz*(ucu_phi_4_o_t_2 - ucu_mu_4_o_t) +
+            + ucu_J_4_in_spec4_xz*(ucu_W_2_t_2 - ucu_mu_4_o_t) +
             ucu_acc_4_o_in_axes4_z*ucu_h_4_in_spec4_z -
             ucu_B_4_o_in_axes4_yz*ucu_Sigma_4_in_axes4_zz -
             ucu_B_4_o_in_axes4_zx*ucu_J_4_in_spec4_yz - ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_x
@@ -2379,12 +2361,12 @@ def _run_dynamics(m, X, V):
         ucu_B_4_o_in_axes4_xz*ucu_Sigma_4_in_axes4_zz + ucu_B_4_o_in_axes4_zy*ucu_J_4_in_spec4_yz
             + ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_x -
             ucu_B_4_o_in_axes4_xy*ucu_J_4_in_spec4_xz -
-            ucu_B_4_o_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_phi_4_o_t -
+            ucu_B_4_o_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_W_2_t -
             ucu_mu_4_o_t) - ucu_acc_4_o_in_axes4_z*ucu_h_4_in_spec4_y
         )
         ucu_mu_4_o_in_axes4_z = (
-        ucu_B_4_o_in_axes4_xz*ucu_J_4_in_spec4_xz + ucu_B_4_o_in_axes4_yx*ucu_Sigma_4_in_axes4_xx
-            + ucu_J_4_in_spec4_yz*(ucu_phi_4_o_t - ucu_phi_4_o_t_2) +
+        ucu_mu_4_t + ucu_B_4_o_in_axes4_xz*ucu_J_4_in_spec4_xz +
+            ucu_B_4_o_in_axes4_yx*ucu_Sigma_4_in_axes4_xx +
             ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_y -
             ucu_B_4_o_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
             ucu_B_4_o_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_z
@@ -2408,34 +2390,38 @@ def _run_dynamics(m, X, V):
         ucu_h_4_in_spec4_y + ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y -
             ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x
         )
-        # (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        ucu_mu_2_o_t = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
-        ucu_mu_2_o_t_2 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
-        ucu_mu_2_o_t_3 = ucu_qd_2*ucu_qd_2
-        ucu_mu_2_o_t_4 = ucu_h_4_t_10*ucu_mu_2_t_2 + ucu_h_4_t_9*ucu_mu_2_t
+        # (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
+        ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
+        ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2
+        ucu_mu_2_t_7 = ucu_h_4_t_10*ucu_mu_2_t_2 + ucu_h_4_t_9*ucu_mu_2_t
         ucu_g_in_axes2_z = ucu_h_4_t_9*ucu_mu_2_t_2 - ucu_h_4_t_10*ucu_mu_2_t
-        ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 + ucu_h_4_t_13*ucu_mu_2_o_t_4
-        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_o_t_4 - ucu_h_4_t_13*ucu_mu_2_t_3
+        ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 + ucu_h_4_t_13*ucu_mu_2_t_7
+        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_h_4_t_13*ucu_mu_2_t_3
+        ucu_mu_2_t_8 = ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 - ucu_mu_2_t_6)
+        ucu_mu_2_t_9 = ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 - ucu_mu_2_t_6)
+        ucu_mu_2_t_10 = ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 - ucu_mu_2_t_5)
+        ucu_mu_2_t_11 = ucu_g_in_axes2_y*ucu_h_2_in_spec2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z
+        ucu_mu_2_t_12 = ucu_g_in_axes2_x*ucu_h_2_in_spec2_y - ucu_g_in_axes2_z*ucu_h_2_in_spec2_x
+        ucu_mu_2_t_13 = ucu_g_in_axes2_x*ucu_h_2_in_spec2_z + ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
+        # (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         ucu_mu_2_o_in_axes2_x = (
-        ucu_B_2_o_in_axes2_yx*ucu_J_2_in_spec2_xy + ucu_B_2_o_in_axes2_zx*ucu_J_2_in_spec2_xz +
+        ucu_mu_2_t_11 + ucu_B_2_o_in_axes2_yx*ucu_J_2_in_spec2_xy +
+            ucu_B_2_o_in_axes2_zx*ucu_J_2_in_spec2_xz +
             ucu_B_2_o_in_axes2_zy*ucu_Sigma_2_in_axes2_yy +
-            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y
-            + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_o_t_2 -
-            ucu_mu_2_o_t_3)
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_x - ucu_mu_2_t_8
         )
         ucu_mu_2_o_in_axes2_y = (
         ucu_B_2_o_in_axes2_xy*ucu_J_2_in_spec2_yz +
-            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_x
-            - ucu_B_2_o_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
-            ucu_B_2_o_in_axes2_zy*ucu_J_2_in_spec2_xz - ucu_J_2_in_spec2_xy*(ucu_mu_2_o_t -
-            ucu_mu_2_o_t_3) - ucu_g_in_axes2_x*ucu_h_2_in_spec2_y
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_y - ucu_mu_2_t_12 - ucu_mu_2_t_9 -
+            ucu_B_2_o_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
+            ucu_B_2_o_in_axes2_zy*ucu_J_2_in_spec2_xz
         )
         ucu_mu_2_o_in_axes2_z = (
         ucu_B_2_o_in_axes2_yx*ucu_Sigma_2_in_axes2_xx +
-            ucu_J_2_in_spec2_xy*ucu_alpha_1_o_in_axes2_x -
-            ucu_B_2_o_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_o_t -
-            ucu_mu_2_o_t_2) - ucu_J_2_in_spec2_yz*ucu_alpha_1_o_in_axes2_y -
-            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
+            ucu_J_2_in_spec2_xy*ucu_alpha_1_o_in_axes2_x - ucu_mu_2_t_10 - ucu_mu_2_t_13 -
+            ucu_B_2_o_in_axes2_xy*ucu_Sigma_2_in_axes2_yy -
+            ucu_J_2_in_spec2_yz*ucu_alpha_1_o_in_axes2_y
         )
         # (ucu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z
@@ -2479,10 +2465,7 @@ def _run_dynamics(m, X, V):
             ucu_Jc_2_t_4*ucu_e_2_in_axes4_x) - ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z)
         )
         ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*ucu_h_4_t_13
-        ucu_d_Gamma_1_in_axes1_x = (
-        -ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z - ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y -
-            ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z
-        )
+        ucu_d_Gamma_1_in_axes1_x = -ucu_h_4_in_axes1_y - ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z
         ucu_d_Gamma_1_in_axes1_y = (
         ucu_h_4_in_spec4_x*ucu_h_4_t_13 - inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 -
             ucu_e_1_in_axes4_z*ucu_h_4_in_spec2_z
@@ -2579,13 +2562,13 @@ def _run_dynamics(m, X, V):
             ucu_N_2_o_in_axes2_x*ucu_e_1_in_axes4_z - ucu_c_o_t*ucu_v_1_t_2)
         )
         ucu_c_o_in_axes4_x = (
-        ucu_c_o_t_2*ucu_e_2_in_axes4_x + ucu_h_4_in_spec4_y*(ucu_mu_4_o_t + ucu_phi_4_o_t_2) -
+        ucu_c_o_t_2*ucu_e_2_in_axes4_x + ucu_h_4_in_spec4_y*(ucu_W_2_t_2 + ucu_mu_4_o_t) -
             ucu_B_4_o_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_o_in_axes4_xz*ucu_h_4_in_spec4_x -
             ucu_c_o_t*ucu_e_2_in_axes4_y
         )
         ucu_c_o_in_axes4_y = (
         ucu_c_o_t*ucu_e_2_in_axes4_x + ucu_c_o_t_2*ucu_e_2_in_axes4_y +
-            ucu_h_4_in_spec4_z*(ucu_mu_4_o_t + ucu_phi_4_o_t) -
+            ucu_h_4_in_spec4_z*(ucu_W_2_t + ucu_mu_4_o_t) -
             ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x
         )
         # (ucu-Q) inertia of the leg at the connection point, without the mass gathered there
@@ -3011,6 +2994,9 @@ def _run_M(m, X):
         inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
         ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
         ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
+        ucu_h_4_in_axes1_y = (
+        ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y + ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z
+        )
         ucu_h_4_in_spec2_z = (
         ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_z - ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y
         )
@@ -3162,10 +3148,7 @@ def _run_M(m, X):
             ucu_Jc_2_t_4*ucu_e_2_in_axes4_x) - ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z)
         )
         ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*ucu_h_4_t_13
-        ucu_d_Gamma_1_in_axes1_x = (
-        -ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z - ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y -
-            ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z
-        )
+        ucu_d_Gamma_1_in_axes1_x = -ucu_h_4_in_axes1_y - ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z
         ucu_d_Gamma_1_in_axes1_y = (
         ucu_h_4_in_spec4_x*ucu_h_4_t_13 - inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 -
             ucu_e_1_in_axes4_z*ucu_h_4_in_spec2_z
@@ -3464,14 +3447,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 2109 mul, 1530 add, 30 div, 18 sqrt, 0 trig
+# Z: 2118 mul, 1536 add, 30 div, 18 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3527,6 +3510,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3535,39 +3534,12 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_ucu_x, Z_t_ucu_y, Z_t_ucu_z, Z_a_ucu_x, Z_a_ucu_y, Z_a_ucu_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -3584,7 +3556,7 @@ def _run_Z(m, X, V):
             ucu_platform_joint_axis_platform_z, ucu_platform_point_x, ucu_platform_point_y,
             ucu_platform_point_z,
         ) = k
-        # (ucu-S) from the base point to the connection point
+        # (ucu-h_4) first moment of link 4 about the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -3594,65 +3566,60 @@ def _run_Z(m, X, V):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
-        ucu_S_in_turn1_x = (
-        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
+        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
+        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
+        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
+        ucu_h_4_t_4 = (
+        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+            ucu_base_frame_zx*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_y = (
-        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
+        ucu_h_4_t_5 = (
+        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+            ucu_base_frame_zy*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_z = (
-        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
+        ucu_h_4_t_6 = (
+        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+            ucu_base_frame_zz*ucu_h_4_t_3
         )
-        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
-        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
-        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
-        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
-        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
-        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
-        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
-        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
-        ucu_root_4_t = (
+        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
+        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
+        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
+        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
+        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
+        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
+        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
+        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
+        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
+        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
+        ucu_h_4_t_14 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_root_4_t_2 = (
+        ucu_h_4_t_15 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_root_4_t_3 = (
+        ucu_h_4_t_16 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
-        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
-        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
-        ucu_root_4_t_6 = (
-        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
-        )
-        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
-        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
-        inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
+        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
+        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
+        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
+        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
+        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
+        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
+        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
         # (ucu-S_dot) velocity of the connection point
         ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
         ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
@@ -3672,76 +3639,103 @@ def _run_Z(m, X, V):
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1
-        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_c_2
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_9 + ucu_S_dot_t_5*ucu_h_4_t_10
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_h_4_t_13
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
-        ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y
-        ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4
-        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
-        ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t
-        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
-        ucu_v_1_t_2 = ucu_c_4*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
+        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
+        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
+        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
+        ucu_v_1_in_axes2_z = (
+        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
+        )
+        ucu_v_1_t_2 = (
+        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
+        )
         # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 + ucu_e_1_in_axes4_z*ucu_root_4_t_3
-        ucu_n_m1_in_axes2_z = ucu_c_4*ucu_n_m1_in_axes4_x
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_5
-        # (ucu-w_3) force part of reciprocal wrench 3
-        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
-        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
-        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
-        # (ucu-m1_w_4) moment part 1 of reciprocal wrench 4
-        inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
-        # (ucu-eta_1) rate at which the joints turn along moment direction 1
-        ucu_eta_1_t = ucu_c_4*ucu_e_1_in_axes4_z
-        ucu_eta_1_t_2 = -ucu_c_1*ucu_eta_1_t - ucu_e_2_in_axes4_y*ucu_s_1
-        ucu_eta_1_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_eta_1_t*ucu_s_1
+        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 + ucu_h_4_t_13*ucu_h_4_t_17
+        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
+        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
+        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
+        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
+        ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t
+        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t
         axis_y_ucu_axes4_x = (
-        ucu_base_frame_xx*ucu_eta_1_t_2 + ucu_base_frame_xy*ucu_eta_1_t_3 +
+        ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
             ucu_base_frame_xz*ucu_e_1_in_axes4_y
         )
         axis_y_ucu_axes4_y = (
-        ucu_base_frame_yx*ucu_eta_1_t_2 + ucu_base_frame_yy*ucu_eta_1_t_3 +
+        ucu_base_frame_yx*ucu_n_m1_t_2 + ucu_base_frame_yy*ucu_n_m1_t_3 +
             ucu_base_frame_yz*ucu_e_1_in_axes4_y
         )
         axis_y_ucu_axes4_z = (
-        ucu_base_frame_zx*ucu_eta_1_t_2 + ucu_base_frame_zy*ucu_eta_1_t_3 +
+        ucu_base_frame_zx*ucu_n_m1_t_2 + ucu_base_frame_zy*ucu_n_m1_t_3 +
             ucu_base_frame_zz*ucu_e_1_in_axes4_y
         )
-        axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z - axis_y_ucu_axes4_z*ucu_w_3_y
-        axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x - axis_y_ucu_axes4_x*ucu_w_3_z
-        axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y - axis_y_ucu_axes4_y*ucu_w_3_x
-        ucu_eta_1 = (
-        omega_x*(axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_w_3_x) +
-            omega_y*(axis_x_ucu_axes4_y*ucu_n_m1_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_w_3_y) +
-            omega_z*(axis_x_ucu_axes4_z*ucu_n_m1_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_w_3_z)
+        axis_x_ucu_axes4_x = (
+        axis_y_ucu_axes4_y*axis_z_ucu_axes4_z - axis_y_ucu_axes4_z*axis_z_ucu_axes4_y
         )
-        # (ucu-qd_1) rate of joint 1
+        axis_x_ucu_axes4_y = (
+        axis_y_ucu_axes4_z*axis_z_ucu_axes4_x - axis_y_ucu_axes4_x*axis_z_ucu_axes4_z
+        )
+        axis_x_ucu_axes4_z = (
+        axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
+        )
+        ucu_end_p1_in_axes4_x = (
+        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
+        )
+        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_n_m1_x = (
+        axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x - axis_z_ucu_axes4_x*ucu_end_p1_in_axes4_x
+        )
+        ucu_n_m1_y = (
+        axis_x_ucu_axes4_y*ucu_n_m1_in_axes4_x - axis_z_ucu_axes4_y*ucu_end_p1_in_axes4_x
+        )
+        ucu_n_m1_z = (
+        axis_x_ucu_axes4_z*ucu_n_m1_in_axes4_x - axis_z_ucu_axes4_z*ucu_end_p1_in_axes4_x
+        )
+        # (ucu-w_1) force part of reciprocal wrench 1
         inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
-        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_c_1 - ucu_S_dot_t_4*ucu_s_1)
+        # (ucu-w_4) force part of reciprocal wrench 4
+        ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
+        inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
+        # (ucu-eta_1) rate at which the joints turn along moment direction 1
+        ucu_eta_1 = omega_x*ucu_n_m1_x + omega_y*ucu_n_m1_y + omega_z*ucu_n_m1_z
+        # (ucu-qd_1) rate of joint 1
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_h_4_t_9 - ucu_S_dot_t_4*ucu_h_4_t_10)
         # (ucu-qd_2) rate of joint 2
         ucu_qd_2 = (
-        inv_ucu_root_2*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
-            ucu_S_dot_t_6*ucu_c_2)
+        inv_ucu_h_4_t_12*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
+            ucu_S_dot_t_6*ucu_h_4_t_13)
         )
         # (ucu-qd_4) rate of joint 4
-        ucu_qd_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
-        ucu_qd_4 = (
-        -inv_ucu_end_p1_in_axes4_x*(ucu_eta_1 + ucu_qd_1*ucu_qd_4_t -
-            ucu_n_m1_in_axes2_z*ucu_qd_2)
+        ucu_qd_4_t = ucu_qd_1*ucu_w_4_t
+        ucu_qd_4_t_2 = ucu_n_m1_in_axes2_z*ucu_qd_2
+        ucu_qd_4 = -inv_ucu_end_p1_in_axes4_x*(ucu_eta_1 + ucu_qd_4_t - ucu_qd_4_t_2)
+        ucu_omega_in_axes4_x = (
+        axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
+        )
+        ucu_omega_in_axes4_z = (
+        axis_z_ucu_axes4_x*omega_x + axis_z_ucu_axes4_y*omega_y + axis_z_ucu_axes4_z*omega_z
         )
         # (ucu-omega_1) angular velocity of link 1
         ucu_omega_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qd_1
-        ucu_omega_1_in_axes2_y = -ucu_c_2*ucu_qd_1
+        ucu_omega_1_in_axes2_y = -ucu_h_4_t_13*ucu_qd_1
         # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_in_axes4_x = ucu_c_4*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
-        ucu_omega_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_c_4*ucu_omega_1_in_axes2_y
+        ucu_omega_2_in_axes4_x = (
+        ucu_e_2_in_axes4_x*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
+        )
+        ucu_omega_2_in_axes4_y = (
+        ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y
+        )
         # (ucu-W_2) centripetal tensor of link 2
         ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
         ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
         ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y
+        ucu_W_2_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_W_2_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
         ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y
+        ucu_W_2_t_3 = ucu_W_2_t + ucu_W_2_t_2
         # (ucu-omega_4) angular velocity of link 4
         ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4
         # (ucu-W_4) centripetal tensor of link 4
@@ -3766,58 +3760,55 @@ def _run_Z(m, X, V):
         # (ucu-bias) acceleration of the connection point at zero joint accelerations
         ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
         ucu_bias_in_axes4_x = (
-        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_c_4 +
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_h_4_t_12*(ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_x +
             ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
         )
         ucu_bias_in_axes4_y = (
-        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+        ucu_h_4_t_12*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
             ucu_bias_t*ucu_omega_2_in_axes4_x
         )
         # (ucu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x
         ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_bias_in_axes4_y
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_c_4*ucu_root_4_t_5
-        ucu_omega_in_axes4_x = (
-        axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
+        ucu_end_p1_in_axes4_y = (
+        ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_e_2_in_axes4_x*ucu_h_4_t_18
         )
         ucu_omega_in_axes4_y = (
         axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
         )
-        ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y + omega_z*ucu_w_3_z
+        ucu_nd_m1_t = (
+        ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y - ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z
+        )
         ucu_nd_m1_in_axes4_x = (
         ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
             ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x
         )
-        ucu_nd_m1_in_axes4_z = (
-        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z
-            - ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y
-        )
+        ucu_nd_m1_in_axes4_z = -ucu_nd_m1_t - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z
         # (ucu-nu_1) bias of the angular acceleration along moment direction 1
-        ucu_nu_1_t = (
-        ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x - ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x
+        ucu_nu_1_t = ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_nu_1_t_2 = -ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x
+        ucu_nu_1_t_3 = ucu_nu_1_t_2 + ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_nu_1_t_4 = ucu_omega_2_in_axes4_y - ucu_omega_in_axes4_y
+        ucu_nu_1_t_5 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x)
+        ucu_nu_1_t_6 = (
+        ucu_nu_1_t_5 + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z - ucu_omega_in_axes4_z) +
+            ucu_nu_1_t_4*(ucu_nu_1_t + ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
         )
-        ucu_nu_1_t_2 = (
-        ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x) +
-            ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z - ucu_omega_in_axes4_z) +
-            (ucu_omega_2_in_axes4_y -
-            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
-            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
-        )
-        ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
+        ucu_nu_1 = -ucu_nu_1_t_3 - ucu_nu_1_t_6
         # (ucu-qdd_1_o) remainder of: acceleration of joint 1
         ucu_qdd_1_o = (
-        inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_o_in_axes4_x +
+        inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y)
         )
         # (ucu-qdd_2_o) remainder of: acceleration of joint 2
         ucu_qdd_2_o = (
-        inv_ucu_root_2*(ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x + ucu_qdd_1_o*ucu_v_1_t_2 -
-            ucu_c_4*ucu_rel_o_in_axes4_y)
+        inv_ucu_h_4_t_12*(ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x + ucu_qdd_1_o*ucu_v_1_t_2 -
+            ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y)
         )
         # (ucu-alpha_1_o) remainder of: angular acceleration of link 1
         ucu_alpha_1_o_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qdd_1_o
-        ucu_alpha_1_o_in_axes2_y = -ucu_c_2*ucu_qdd_1_o
+        ucu_alpha_1_o_in_axes2_y = -ucu_h_4_t_13*ucu_qdd_1_o
         # (ucu-alpha_2_o) remainder of: angular acceleration of link 2
         ucu_alpha_2_o_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x
         ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - ucu_W_2_in_axes2_xz
@@ -3828,14 +3819,15 @@ def _run_Z(m, X, V):
         ucu_B_2_o_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x
         # (ucu-alpha_4_o) remainder of: angular acceleration of link 4
         ucu_alpha_4_o_in_axes4_x = (
-        ucu_zeta_4_in_axes4_x + ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_y + ucu_c_4*ucu_qdd_2_o
+        ucu_zeta_4_in_axes4_x + ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_y +
+            ucu_e_2_in_axes4_x*ucu_qdd_2_o
         )
         ucu_alpha_4_o_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_qdd_2_o - ucu_alpha_2_o_in_axes2_y*ucu_c_4 -
+        ucu_e_2_in_axes4_y*ucu_qdd_2_o - ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_x -
             ucu_omega_2_in_axes4_x*ucu_qd_4
         )
         ucu_alpha_4_o_in_axes4_z = (
-        ucu_alpha_2_o_in_axes2_x - inv_ucu_end_p1_in_axes4_x*(ucu_nu_1 + ucu_qd_4_t*ucu_qdd_1_o -
+        ucu_alpha_2_o_in_axes2_x - inv_ucu_end_p1_in_axes4_x*(ucu_nu_1 + ucu_qdd_1_o*ucu_w_4_t -
             ucu_n_m1_in_axes2_z*ucu_qdd_2_o)
         )
         # (ucu-B_4_o) remainder of the acceleration tensor of link 4
@@ -3845,31 +3837,37 @@ def _run_Z(m, X, V):
         ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x
         ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y
         ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x
+        # (ucu-acc_4) acceleration of the reference point of link 4, less gravity
+        ucu_g_in_axes4_x = (
+        axis_x_ucu_axes4_x*gravity_x + axis_x_ucu_axes4_y*gravity_y + axis_x_ucu_axes4_z*gravity_z
+        )
+        ucu_g_in_axes4_y = (
+        axis_y_ucu_axes4_x*gravity_x + axis_y_ucu_axes4_y*gravity_y + axis_y_ucu_axes4_z*gravity_z
+        )
+        ucu_g_in_axes4_z = (
+        axis_z_ucu_axes4_x*gravity_x + axis_z_ucu_axes4_y*gravity_y + axis_z_ucu_axes4_z*gravity_z
+        )
         # (ucu-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
-        ucu_acc_4_o_in_axes4_x = (
-        ucu_u_1_in_axes4_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
-            axis_x_ucu_axes4_z*gravity_z
-        )
-        ucu_acc_4_o_in_axes4_y = (
-        ucu_u_1_in_axes4_y - axis_y_ucu_axes4_x*gravity_x - axis_y_ucu_axes4_y*gravity_y -
-            axis_y_ucu_axes4_z*gravity_z
-        )
+        ucu_acc_4_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_g_in_axes4_x
+        ucu_acc_4_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_g_in_axes4_y
         ucu_acc_4_o_in_axes4_z = (
-        ucu_u_1_x*ucu_w_3_x + ucu_u_1_y*ucu_w_3_y + ucu_u_1_z*ucu_w_3_z - gravity_x*ucu_w_3_x -
-            gravity_y*ucu_w_3_y - gravity_z*ucu_w_3_z
+        axis_z_ucu_axes4_x*ucu_u_1_x + axis_z_ucu_axes4_y*ucu_u_1_y + axis_z_ucu_axes4_z*ucu_u_1_z
+            - ucu_g_in_axes4_z
         )
+        # (ucu-phi_4) inertia force of link 4 from its turning about its reference point
+        ucu_phi_4_t = ucu_W_2_t_3*ucu_h_4_in_spec4_x
         # (ucu-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
-        ucu_phi_4_o_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
-        ucu_phi_4_o_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
         ucu_phi_4_o_in_axes4_z = (
         ucu_B_4_o_in_axes4_zx*ucu_h_4_in_spec4_y + ucu_B_4_o_in_axes4_zy*ucu_h_4_in_spec4_z -
-            ucu_h_4_in_spec4_x*(ucu_phi_4_o_t + ucu_phi_4_o_t_2)
+            ucu_phi_4_t
         )
+        # (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        ucu_mu_4_t = ucu_J_4_in_spec4_yz*(ucu_W_2_t - ucu_W_2_t_2)
         # (ucu-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their reference points
         ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z
         ucu_mu_4_o_in_axes4_x = (
         ucu_B_4_o_in_axes4_yx*ucu_J_4_in_spec4_xy + ucu_B_4_o_in_axes4_zy*ucu_Sigma_4_in_axes4_yy
-            + ucu_J_4_in_spec4_xz*(ucu_phi_4_o_t_2 - ucu_mu_4_o_t) +
+            + ucu_J_4_in_spec4_xz*(ucu_W_2_t_2 - ucu_mu_4_o_t) +
             ucu_acc_4_o_in_axes4_z*ucu_h_4_in_spec4_z -
             ucu_B_4_o_in_axes4_yz*ucu_Sigma_4_in_axes4_zz -
             ucu_B_4_o_in_axes4_zx*ucu_J_4_in_spec4_yz - ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_x
@@ -3878,107 +3876,111 @@ def _run_Z(m, X, V):
         ucu_B_4_o_in_axes4_xz*ucu_Sigma_4_in_axes4_zz + ucu_B_4_o_in_axes4_zy*ucu_J_4_in_spec4_yz
             + ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_x -
             ucu_B_4_o_in_axes4_xy*ucu_J_4_in_spec4_xz -
-            ucu_B_4_o_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_phi_4_o_t -
+            ucu_B_4_o_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_W_2_t -
             ucu_mu_4_o_t) - ucu_acc_4_o_in_axes4_z*ucu_h_4_in_spec4_y
         )
         ucu_mu_4_o_in_axes4_z = (
-        ucu_B_4_o_in_axes4_xz*ucu_J_4_in_spec4_xz + ucu_B_4_o_in_axes4_yx*ucu_Sigma_4_in_axes4_xx
-            + ucu_J_4_in_spec4_yz*(ucu_phi_4_o_t - ucu_phi_4_o_t_2) +
+        ucu_mu_4_t + ucu_B_4_o_in_axes4_xz*ucu_J_4_in_spec4_xz +
+            ucu_B_4_o_in_axes4_yx*ucu_Sigma_4_in_axes4_xx +
             ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_y -
             ucu_B_4_o_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
             ucu_B_4_o_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_z
         )
+        # (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
+        ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
+        ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2
+        ucu_mu_2_t_7 = ucu_h_4_t_10*ucu_mu_2_t_2 + ucu_h_4_t_9*ucu_mu_2_t
+        ucu_g_in_axes2_z = ucu_h_4_t_9*ucu_mu_2_t_2 - ucu_h_4_t_10*ucu_mu_2_t
+        ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 + ucu_h_4_t_13*ucu_mu_2_t_7
+        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_h_4_t_13*ucu_mu_2_t_3
+        ucu_mu_2_t_8 = ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 - ucu_mu_2_t_6)
+        ucu_mu_2_t_9 = ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 - ucu_mu_2_t_6)
+        ucu_mu_2_t_10 = ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 - ucu_mu_2_t_5)
+        ucu_mu_2_t_11 = ucu_g_in_axes2_y*ucu_h_2_in_spec2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z
+        ucu_mu_2_t_12 = ucu_g_in_axes2_x*ucu_h_2_in_spec2_y - ucu_g_in_axes2_z*ucu_h_2_in_spec2_x
+        ucu_mu_2_t_13 = ucu_g_in_axes2_x*ucu_h_2_in_spec2_z + ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
         # (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        ucu_mu_2_o_t = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
-        ucu_mu_2_o_t_2 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
-        ucu_mu_2_o_t_3 = ucu_qd_2*ucu_qd_2
-        ucu_mu_2_o_t_4 = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1
-        ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1
-        ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_o_t_4 + ucu_e_1_in_axes4_z*ucu_mu_2_t_3
-        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_o_t_4 - ucu_c_2*ucu_mu_2_t_3
         ucu_mu_2_o_in_axes2_x = (
-        ucu_B_2_o_in_axes2_yx*ucu_J_2_in_spec2_xy + ucu_B_2_o_in_axes2_zx*ucu_J_2_in_spec2_xz +
+        ucu_mu_2_t_11 + ucu_B_2_o_in_axes2_yx*ucu_J_2_in_spec2_xy +
+            ucu_B_2_o_in_axes2_zx*ucu_J_2_in_spec2_xz +
             ucu_B_2_o_in_axes2_zy*ucu_Sigma_2_in_axes2_yy +
-            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y
-            + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_o_t_2 -
-            ucu_mu_2_o_t_3)
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_x - ucu_mu_2_t_8
         )
         ucu_mu_2_o_in_axes2_y = (
         ucu_B_2_o_in_axes2_xy*ucu_J_2_in_spec2_yz +
-            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_x
-            - ucu_B_2_o_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
-            ucu_B_2_o_in_axes2_zy*ucu_J_2_in_spec2_xz - ucu_J_2_in_spec2_xy*(ucu_mu_2_o_t -
-            ucu_mu_2_o_t_3) - ucu_g_in_axes2_x*ucu_h_2_in_spec2_y
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_y - ucu_mu_2_t_12 - ucu_mu_2_t_9 -
+            ucu_B_2_o_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
+            ucu_B_2_o_in_axes2_zy*ucu_J_2_in_spec2_xz
         )
         ucu_mu_2_o_in_axes2_z = (
         ucu_B_2_o_in_axes2_yx*ucu_Sigma_2_in_axes2_xx +
-            ucu_J_2_in_spec2_xy*ucu_alpha_1_o_in_axes2_x -
-            ucu_B_2_o_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_o_t -
-            ucu_mu_2_o_t_2) - ucu_J_2_in_spec2_yz*ucu_alpha_1_o_in_axes2_y -
-            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
+            ucu_J_2_in_spec2_xy*ucu_alpha_1_o_in_axes2_x - ucu_mu_2_t_10 - ucu_mu_2_t_13 -
+            ucu_B_2_o_in_axes2_xy*ucu_Sigma_2_in_axes2_yy -
+            ucu_J_2_in_spec2_yz*ucu_alpha_1_o_in_axes2_y
         )
         # (ucu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z
         ucu_N_2_o_in_axes2_y = (
         ucu_mu_2_o_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x -
-            ucu_c_4*ucu_mu_4_o_in_axes4_y
+            ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_y
         )
         ucu_N_2_o_in_axes2_z = (
-        ucu_mu_2_o_in_axes2_z + ucu_c_4*ucu_mu_4_o_in_axes4_x +
+        ucu_mu_2_o_in_axes2_z + ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y
         )
         # (ucu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         ucu_G_m1_o_t = inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z
         # (ucu-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
-        ucu_c_o_t = inv_ucu_root_2*(ucu_N_2_o_in_axes2_z + ucu_G_m1_o_t*ucu_n_m1_in_axes2_z)
+        ucu_c_o_t = inv_ucu_h_4_t_12*(ucu_N_2_o_in_axes2_z + ucu_G_m1_o_t*ucu_n_m1_in_axes2_z)
         ucu_c_o_t_2 = (
-        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*ucu_qd_4_t + ucu_N_2_o_in_axes2_y*ucu_c_2 -
+        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*ucu_w_4_t + ucu_N_2_o_in_axes2_y*ucu_h_4_t_13 -
             ucu_N_2_o_in_axes2_x*ucu_e_1_in_axes4_z - ucu_c_o_t*ucu_v_1_t_2)
         )
         ucu_c_o_in_axes4_x = (
-        ucu_c_4*ucu_c_o_t_2 + ucu_h_4_in_spec4_y*(ucu_mu_4_o_t + ucu_phi_4_o_t_2) -
+        ucu_c_o_t_2*ucu_e_2_in_axes4_x + ucu_h_4_in_spec4_y*(ucu_W_2_t_2 + ucu_mu_4_o_t) -
             ucu_B_4_o_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_o_in_axes4_xz*ucu_h_4_in_spec4_x -
             ucu_c_o_t*ucu_e_2_in_axes4_y
         )
         ucu_c_o_in_axes4_y = (
-        ucu_c_4*ucu_c_o_t + ucu_c_o_t_2*ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_mu_4_o_t +
-            ucu_phi_4_o_t) - ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y -
-            ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x
+        ucu_c_o_t*ucu_e_2_in_axes4_x + ucu_c_o_t_2*ucu_e_2_in_axes4_y +
+            ucu_h_4_in_spec4_z*(ucu_W_2_t + ucu_mu_4_o_t) -
+            ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x
         )
         # (ucu-c_m_o) remainder of: moment of the leg on the platform without actuation
         ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*ucu_n_m1_in_axes4_x
         # (ucu-U) velocity and gravity terms of the leg force
         ucu_U_x = (
-        ucu_phi_4_o_in_axes4_z*ucu_w_3_x - axis_x_ucu_axes4_x*ucu_c_o_in_axes4_x -
+        axis_z_ucu_axes4_x*ucu_phi_4_o_in_axes4_z - axis_x_ucu_axes4_x*ucu_c_o_in_axes4_x -
             axis_y_ucu_axes4_x*ucu_c_o_in_axes4_y
         )
         ucu_U_y = (
-        ucu_phi_4_o_in_axes4_z*ucu_w_3_y - axis_x_ucu_axes4_y*ucu_c_o_in_axes4_x -
+        axis_z_ucu_axes4_y*ucu_phi_4_o_in_axes4_z - axis_x_ucu_axes4_y*ucu_c_o_in_axes4_x -
             axis_y_ucu_axes4_y*ucu_c_o_in_axes4_y
         )
         ucu_U_z = (
-        ucu_phi_4_o_in_axes4_z*ucu_w_3_z - axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x -
+        axis_z_ucu_axes4_z*ucu_phi_4_o_in_axes4_z - axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x -
             axis_y_ucu_axes4_z*ucu_c_o_in_axes4_y
         )
         # (Z_a) rotational part of Z
         ucu_Z_a_t = (
-        ucu_U_z*ucu_q_y + ucu_mu_4_o_in_axes4_z*ucu_w_3_x -
+        axis_z_ucu_axes4_x*ucu_mu_4_o_in_axes4_z + ucu_U_z*ucu_q_y -
             axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x - ucu_U_y*ucu_q_z
         )
         ucu_Z_a_t_2 = (
-        ucu_U_x*ucu_q_z + ucu_mu_4_o_in_axes4_z*ucu_w_3_y -
+        axis_z_ucu_axes4_y*ucu_mu_4_o_in_axes4_z + ucu_U_x*ucu_q_z -
             axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x - ucu_U_z*ucu_q_x
         )
         ucu_Z_a_t_3 = (
-        ucu_U_y*ucu_q_x + ucu_mu_4_o_in_axes4_z*ucu_w_3_z -
+        axis_z_ucu_axes4_z*ucu_mu_4_o_in_axes4_z + ucu_U_y*ucu_q_x -
             axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x - ucu_U_x*ucu_q_y
         )
         ok = (
-        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
-            _TOLERANCE * 0.8)
+        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
+            > _TOLERANCE * 0.8)
         )
         # (Z_t) translational part of Z
         Z_t_ucu_x += ucu_U_x
@@ -4055,7 +4057,7 @@ def _run_H(m, X):
             ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_2,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-S) from the base point to the connection point
+        # (ucu-h_4) first moment of link 4 about the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -4065,41 +4067,42 @@ def _run_H(m, X):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
-        ucu_S_in_turn1_x = (
-        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
+        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
+        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
+        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
+        ucu_h_4_t_4 = (
+        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+            ucu_base_frame_zx*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_y = (
-        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
+        ucu_h_4_t_5 = (
+        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+            ucu_base_frame_zy*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_z = (
-        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
+        ucu_h_4_t_6 = (
+        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+            ucu_base_frame_zz*ucu_h_4_t_3
         )
-        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
-        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
-        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
-        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
-        # (ucu-w_3) force part of reciprocal wrench 3
-        inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
-        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
-        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
+        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
+        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
+        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
+        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
+        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
+        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
         # (ucu-H_a_3) moment of the column's unit force about the platform origin
-        ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y
-        ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z
-        ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x
+        ucu_H_a_3_x = axis_z_ucu_axes4_z*ucu_q_y - axis_z_ucu_axes4_y*ucu_q_z
+        ucu_H_a_3_y = axis_z_ucu_axes4_x*ucu_q_z - axis_z_ucu_axes4_z*ucu_q_x
+        ucu_H_a_3_z = axis_z_ucu_axes4_y*ucu_q_x - axis_z_ucu_axes4_x*ucu_q_y
         ok = (
-        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_root_2)
-            > _TOLERANCE * 0.8)
+        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8)
         )
         # (ucu-w_3) force part of reciprocal wrench 3
-        out_H[_H_ucu[0][leg]] = ucu_w_3_x
-        out_H[_H_ucu[1][leg]] = ucu_w_3_y
-        out_H[_H_ucu[2][leg]] = ucu_w_3_z
+        out_H[_H_ucu[0][leg]] = axis_z_ucu_axes4_x
+        out_H[_H_ucu[1][leg]] = axis_z_ucu_axes4_y
+        out_H[_H_ucu[2][leg]] = axis_z_ucu_axes4_z
         # (ucu-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ucu[3][leg]] = ucu_H_a_3_x
         out_H[_H_ucu[4][leg]] = ucu_H_a_3_y
@@ -4107,7 +4110,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 2205 mul, 1641 add, 30 div, 18 sqrt, 0 trig
+# required: 2187 mul, 1623 add, 30 div, 18 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -4181,9 +4184,22 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -4196,21 +4212,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
-        f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
-        f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
-        f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*m_star - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -4267,7 +4271,7 @@ def _run_required(m, X, V, A):
             ucu_platform_joint_axis_platform_z, ucu_platform_point_x, ucu_platform_point_y,
             ucu_platform_point_z,
         ) = k
-        # (ucu-S) from the base point to the connection point
+        # (ucu-h_4) first moment of link 4 about the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -4277,65 +4281,60 @@ def _run_required(m, X, V, A):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
-        ucu_S_in_turn1_x = (
-        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
+        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
+        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
+        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
+        ucu_h_4_t_4 = (
+        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+            ucu_base_frame_zx*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_y = (
-        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
+        ucu_h_4_t_5 = (
+        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+            ucu_base_frame_zy*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_z = (
-        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
+        ucu_h_4_t_6 = (
+        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+            ucu_base_frame_zz*ucu_h_4_t_3
         )
-        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
-        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
-        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
-        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
-        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
-        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
-        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
-        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
-        ucu_root_4_t = (
+        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
+        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
+        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
+        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
+        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
+        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
+        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
+        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
+        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
+        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
+        ucu_h_4_t_14 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_root_4_t_2 = (
+        ucu_h_4_t_15 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_root_4_t_3 = (
+        ucu_h_4_t_16 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
-        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
-        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
-        ucu_root_4_t_6 = (
-        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
-        )
-        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
-        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
-        inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
+        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
+        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
+        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
+        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
+        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
+        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
+        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
         # (ucu-S_dot) velocity of the connection point
         ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
         ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
@@ -4355,87 +4354,104 @@ def _run_required(m, X, V, A):
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1
-        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_c_2
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_9 + ucu_S_dot_t_5*ucu_h_4_t_10
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_h_4_t_13
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
-        ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y
-        ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4
-        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
-        ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t
-        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
-        ucu_v_1_t_2 = ucu_c_4*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 + ucu_e_1_in_axes4_z*ucu_root_4_t_3
-        ucu_n_m1_in_axes2_z = ucu_c_4*ucu_n_m1_in_axes4_x
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_5
-        # (ucu-w_3) force part of reciprocal wrench 3
-        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
-        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
-        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
-        # (ucu-m1_w_4) moment part 1 of reciprocal wrench 4
-        inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
-        # (ucu-qd_1) rate of joint 1
-        inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
-        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_c_1 - ucu_S_dot_t_4*ucu_s_1)
-        # (ucu-qd_2) rate of joint 2
-        ucu_qd_2 = (
-        inv_ucu_root_2*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
-            ucu_S_dot_t_6*ucu_c_2)
+        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
+        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
+        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
+        ucu_v_1_in_axes2_z = (
+        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
         )
-        # (ucu-qd_4) rate of joint 4
-        ucu_qd_4_t = ucu_c_4*ucu_e_1_in_axes4_z
-        ucu_qd_4_t_2 = -ucu_c_1*ucu_qd_4_t - ucu_e_2_in_axes4_y*ucu_s_1
-        ucu_qd_4_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_qd_4_t*ucu_s_1
+        ucu_v_1_t_2 = (
+        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
+        )
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 + ucu_h_4_t_13*ucu_h_4_t_17
+        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
+        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
+        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
+        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
+        ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t
+        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t
         axis_y_ucu_axes4_x = (
-        ucu_base_frame_xx*ucu_qd_4_t_2 + ucu_base_frame_xy*ucu_qd_4_t_3 +
+        ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
             ucu_base_frame_xz*ucu_e_1_in_axes4_y
         )
         axis_y_ucu_axes4_y = (
-        ucu_base_frame_yx*ucu_qd_4_t_2 + ucu_base_frame_yy*ucu_qd_4_t_3 +
+        ucu_base_frame_yx*ucu_n_m1_t_2 + ucu_base_frame_yy*ucu_n_m1_t_3 +
             ucu_base_frame_yz*ucu_e_1_in_axes4_y
         )
         axis_y_ucu_axes4_z = (
-        ucu_base_frame_zx*ucu_qd_4_t_2 + ucu_base_frame_zy*ucu_qd_4_t_3 +
+        ucu_base_frame_zx*ucu_n_m1_t_2 + ucu_base_frame_zy*ucu_n_m1_t_3 +
             ucu_base_frame_zz*ucu_e_1_in_axes4_y
         )
-        axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z - axis_y_ucu_axes4_z*ucu_w_3_y
-        axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x - axis_y_ucu_axes4_x*ucu_w_3_z
-        axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y - axis_y_ucu_axes4_y*ucu_w_3_x
-        ucu_qd_4_t_4 = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
+        axis_x_ucu_axes4_x = (
+        axis_y_ucu_axes4_y*axis_z_ucu_axes4_z - axis_y_ucu_axes4_z*axis_z_ucu_axes4_y
+        )
+        axis_x_ucu_axes4_y = (
+        axis_y_ucu_axes4_z*axis_z_ucu_axes4_x - axis_y_ucu_axes4_x*axis_z_ucu_axes4_z
+        )
+        axis_x_ucu_axes4_z = (
+        axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
+        )
+        ucu_end_p1_in_axes4_x = (
+        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
+        )
+        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        # (ucu-w_1) force part of reciprocal wrench 1
+        inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
+        # (ucu-w_4) force part of reciprocal wrench 4
+        ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
+        inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
+        # (ucu-qd_1) rate of joint 1
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_h_4_t_9 - ucu_S_dot_t_4*ucu_h_4_t_10)
+        # (ucu-qd_2) rate of joint 2
+        ucu_qd_2 = (
+        inv_ucu_h_4_t_12*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
+            ucu_S_dot_t_6*ucu_h_4_t_13)
+        )
+        # (ucu-qd_4) rate of joint 4
+        ucu_qd_4_t = ucu_qd_1*ucu_w_4_t
+        ucu_qd_4_t_2 = ucu_n_m1_in_axes2_z*ucu_qd_2
         ucu_omega_in_axes4_x = (
         axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
         )
-        ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y + omega_z*ucu_w_3_z
-        ucu_qd_4 = (
-        ucu_omega_in_axes4_z - inv_ucu_end_p1_in_axes4_x*(ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x
-            + ucu_qd_1*ucu_qd_4_t_4 - ucu_n_m1_in_axes2_z*ucu_qd_2)
+        ucu_omega_in_axes4_z = (
+        axis_z_ucu_axes4_x*omega_x + axis_z_ucu_axes4_y*omega_y + axis_z_ucu_axes4_z*omega_z
+        )
+        ucu_qd_4_2 = (
+        ucu_omega_in_axes4_z - inv_ucu_end_p1_in_axes4_x*(ucu_qd_4_t +
+            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x - ucu_qd_4_t_2)
         )
         # (ucu-omega_1) angular velocity of link 1
         ucu_omega_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qd_1
-        ucu_omega_1_in_axes2_y = -ucu_c_2*ucu_qd_1
+        ucu_omega_1_in_axes2_y = -ucu_h_4_t_13*ucu_qd_1
         # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_in_axes4_x = ucu_c_4*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
-        ucu_omega_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_c_4*ucu_omega_1_in_axes2_y
+        ucu_omega_2_in_axes4_x = (
+        ucu_e_2_in_axes4_x*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
+        )
+        ucu_omega_2_in_axes4_y = (
+        ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y
+        )
         # (ucu-W_2) centripetal tensor of link 2
         ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
         ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
         ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y
+        ucu_W_2_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_W_2_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
         ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y
+        ucu_W_2_t_3 = ucu_W_2_t + ucu_W_2_t_2
         # (ucu-omega_4) angular velocity of link 4
-        ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4
+        ucu_omega_4_in_axes4_z_2 = ucu_omega_1_in_axes2_x + ucu_qd_4_2
         # (ucu-W_4) centripetal tensor of link 4
-        ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z
-        ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z
-        # (ucu-a_p) acceleration of the connection point without its centripetal part
-        ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_z - alpha_z*ucu_q_y
-        ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_x - alpha_x*ucu_q_z
-        ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_y - alpha_y*ucu_q_x
+        ucu_W_4_in_axes4_xz_2 = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z_2
+        ucu_W_4_in_axes4_yz_2 = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z_2
         # (ucu-S_ddot) acceleration of the connection point
-        ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2
-        ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3
-        ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t
+        ucu_S_ddot_x = t_ddot_x + B_p_xy*ucu_q_y + B_p_xz*ucu_q_z - W_p_t_4*ucu_q_x
+        ucu_S_ddot_y = t_ddot_y + B_p_yx*ucu_q_x + B_p_yz*ucu_q_z - W_p_t_5*ucu_q_y
+        ucu_S_ddot_z = t_ddot_z + B_p_zx*ucu_q_x + B_p_zy*ucu_q_y - W_p_t_6*ucu_q_z
         ucu_S_ddot_in_axes4_x = (
         axis_x_ucu_axes4_x*ucu_S_ddot_x + axis_x_ucu_axes4_y*ucu_S_ddot_y +
             axis_x_ucu_axes4_z*ucu_S_ddot_z
@@ -4444,70 +4460,80 @@ def _run_required(m, X, V, A):
         axis_y_ucu_axes4_x*ucu_S_ddot_x + axis_y_ucu_axes4_y*ucu_S_ddot_y +
             axis_y_ucu_axes4_z*ucu_S_ddot_z
         )
+        ucu_S_ddot_in_axes4_z = (
+        axis_z_ucu_axes4_x*ucu_S_ddot_x + axis_z_ucu_axes4_y*ucu_S_ddot_y +
+            axis_z_ucu_axes4_z*ucu_S_ddot_z
+        )
         # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
         ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_y
         # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4
+        ucu_zeta_4_in_axes4_x_2 = ucu_omega_2_in_axes4_y*ucu_qd_4_2
         # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
-        ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t
+        ucu_beta_4_in_axes4_x_2 = ucu_zeta_4_in_axes4_x_2 - ucu_zeta_2_t
         # (ucu-bias) acceleration of the connection point at zero joint accelerations
         ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
         ucu_bias_in_axes4_x = (
-        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_c_4 +
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_h_4_t_12*(ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_x +
             ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
         )
         ucu_bias_in_axes4_y = (
-        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+        ucu_h_4_t_12*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
             ucu_bias_t*ucu_omega_2_in_axes4_x
         )
         # (ucu-rel) acceleration of the connection point left to the joint accelerations
         ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_bias_in_axes4_x
         ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_bias_in_axes4_y
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_c_4*ucu_root_4_t_5
+        ucu_end_p1_in_axes4_y = (
+        ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_e_2_in_axes4_x*ucu_h_4_t_18
+        )
         ucu_omega_in_axes4_y = (
         axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
+        )
+        ucu_nd_m1_t = (
+        ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y - ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z
         )
         ucu_nd_m1_in_axes4_x = (
         ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
             ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x
         )
-        ucu_nd_m1_in_axes4_z = (
-        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z
-            - ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y
-        )
+        ucu_nd_m1_in_axes4_z_2 = -ucu_nd_m1_t - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z_2
         # (ucu-nu_1) bias of the angular acceleration along moment direction 1
-        ucu_nu_1_t = (
-        ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x - ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x
+        ucu_nu_1_t = ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_nu_1_t_2 = -ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x
+        ucu_nu_1_t_4 = ucu_omega_2_in_axes4_y - ucu_omega_in_axes4_y
+        ucu_nu_1_t_5 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x)
+        ucu_nu_1_t_7 = ucu_nu_1_t_2 + ucu_beta_4_in_axes4_x_2*ucu_n_m1_in_axes4_x
+        ucu_nu_1_t_8 = (
+        ucu_nu_1_t_5 + ucu_nd_m1_in_axes4_z_2*(ucu_omega_4_in_axes4_z_2 - ucu_omega_in_axes4_z) +
+            ucu_nu_1_t_4*(ucu_nu_1_t + ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z_2)
         )
-        ucu_nu_1_t_2 = (
-        ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x) +
-            ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z - ucu_omega_in_axes4_z) +
-            (ucu_omega_2_in_axes4_y -
-            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
-            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
-        )
-        ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
+        ucu_nu_1_2 = -ucu_nu_1_t_7 - ucu_nu_1_t_8
         # (ucu-etad_1) acceleration with which the joints turn along moment direction 1
         ucu_etad_1_t = (
         ucu_n_m1_in_axes4_x*(alpha_x*axis_x_ucu_axes4_x + alpha_y*axis_x_ucu_axes4_y +
-            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_in_axes4_x*(alpha_x*ucu_w_3_x +
-            alpha_y*ucu_w_3_y + alpha_z*ucu_w_3_z)
+            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_in_axes4_x*(alpha_x*axis_z_ucu_axes4_x +
+            alpha_y*axis_z_ucu_axes4_y + alpha_z*axis_z_ucu_axes4_z)
         )
-        ucu_etad_1 = ucu_etad_1_t + ucu_nu_1
+        ucu_etad_1 = ucu_etad_1_t + ucu_nu_1_2
         # (ucu-qdd_1) acceleration of joint 1
         ucu_qdd_1 = (
-        inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_x +
+        inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y)
         )
         # (ucu-qdd_2) acceleration of joint 2
         ucu_qdd_2 = (
-        inv_ucu_root_2*(ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x + ucu_qdd_1*ucu_v_1_t_2 -
-            ucu_c_4*ucu_rel_in_axes4_y)
+        inv_ucu_h_4_t_12*(ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x + ucu_qdd_1*ucu_v_1_t_2 -
+            ucu_e_2_in_axes4_x*ucu_rel_in_axes4_y)
+        )
+        # (ucu-qdd_4) acceleration of joint 4
+        ucu_qdd_4_t = (
+        inv_ucu_end_p1_in_axes4_x*(ucu_etad_1 + ucu_qdd_1*ucu_w_4_t -
+            ucu_n_m1_in_axes2_z*ucu_qdd_2)
         )
         # (ucu-alpha_1) angular acceleration of link 1
         ucu_alpha_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qdd_1
-        ucu_alpha_1_in_axes2_y = -ucu_c_2*ucu_qdd_1
+        ucu_alpha_1_in_axes2_y = -ucu_h_4_t_13*ucu_qdd_1
         # (ucu-alpha_2) angular acceleration of link 2
         ucu_alpha_2_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_in_axes2_x
         ucu_alpha_2_in_axes2_y = ucu_alpha_1_in_axes2_y - ucu_W_2_in_axes2_xz
@@ -4518,153 +4544,149 @@ def _run_required(m, X, V, A):
         ucu_B_2_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_in_axes2_x
         # (ucu-alpha_4) angular acceleration of link 4
         ucu_alpha_4_in_axes4_x = (
-        ucu_zeta_4_in_axes4_x + ucu_alpha_2_in_axes2_y*ucu_e_2_in_axes4_y + ucu_c_4*ucu_qdd_2
+        ucu_zeta_4_in_axes4_x_2 + ucu_alpha_2_in_axes2_y*ucu_e_2_in_axes4_y +
+            ucu_e_2_in_axes4_x*ucu_qdd_2
         )
         ucu_alpha_4_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_c_4 -
-            ucu_omega_2_in_axes4_x*ucu_qd_4
+        ucu_e_2_in_axes4_y*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_e_2_in_axes4_x -
+            ucu_omega_2_in_axes4_x*ucu_qd_4_2
         )
-        ucu_alpha_4_in_axes4_z = (
-        ucu_alpha_2_in_axes2_x - inv_ucu_end_p1_in_axes4_x*(ucu_etad_1 + ucu_qd_4_t_4*ucu_qdd_1 -
-            ucu_n_m1_in_axes2_z*ucu_qdd_2)
-        )
+        ucu_alpha_4_in_axes4_z = ucu_alpha_2_in_axes2_x - ucu_qdd_4_t
         # (ucu-B_4) acceleration tensor of link 4
         ucu_B_4_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_in_axes4_z
-        ucu_B_4_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_in_axes4_y
+        ucu_B_4_in_axes4_xz = ucu_W_4_in_axes4_xz_2 + ucu_alpha_4_in_axes4_y
         ucu_B_4_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_in_axes4_z
-        ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_in_axes4_x
-        ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_in_axes4_y
-        ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_in_axes4_x
+        ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz_2 - ucu_alpha_4_in_axes4_x
+        ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz_2 - ucu_alpha_4_in_axes4_y
+        ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz_2 + ucu_alpha_4_in_axes4_x
         # (ucu-acc_4) acceleration of the reference point of link 4, less gravity
-        ucu_acc_4_in_axes4_x = (
-        ucu_S_ddot_in_axes4_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
-            axis_x_ucu_axes4_z*gravity_z
+        ucu_g_in_axes4_x = (
+        axis_x_ucu_axes4_x*gravity_x + axis_x_ucu_axes4_y*gravity_y + axis_x_ucu_axes4_z*gravity_z
         )
-        ucu_acc_4_in_axes4_y = (
-        ucu_S_ddot_in_axes4_y - axis_y_ucu_axes4_x*gravity_x - axis_y_ucu_axes4_y*gravity_y -
-            axis_y_ucu_axes4_z*gravity_z
+        ucu_g_in_axes4_y = (
+        axis_y_ucu_axes4_x*gravity_x + axis_y_ucu_axes4_y*gravity_y + axis_y_ucu_axes4_z*gravity_z
         )
-        ucu_acc_4_in_axes4_z = (
-        ucu_S_ddot_x*ucu_w_3_x + ucu_S_ddot_y*ucu_w_3_y + ucu_S_ddot_z*ucu_w_3_z -
-            gravity_x*ucu_w_3_x - gravity_y*ucu_w_3_y - gravity_z*ucu_w_3_z
+        ucu_g_in_axes4_z = (
+        axis_z_ucu_axes4_x*gravity_x + axis_z_ucu_axes4_y*gravity_y + axis_z_ucu_axes4_z*gravity_z
         )
+        ucu_acc_4_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_g_in_axes4_x
+        ucu_acc_4_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_g_in_axes4_y
+        ucu_acc_4_in_axes4_z = ucu_S_ddot_in_axes4_z - ucu_g_in_axes4_z
         # (ucu-phi_4) inertia force of link 4 from its turning about its reference point
-        ucu_phi_4_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
-        ucu_phi_4_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
+        ucu_phi_4_t = ucu_W_2_t_3*ucu_h_4_in_spec4_x
         ucu_phi_4_in_axes4_z = (
         ucu_B_4_in_axes4_zx*ucu_h_4_in_spec4_y + ucu_B_4_in_axes4_zy*ucu_h_4_in_spec4_z -
-            ucu_h_4_in_spec4_x*(ucu_phi_4_t + ucu_phi_4_t_2)
+            ucu_phi_4_t
         )
         # (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points
-        ucu_mu_4_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z
+        ucu_mu_4_t = ucu_J_4_in_spec4_yz*(ucu_W_2_t - ucu_W_2_t_2)
+        ucu_mu_4_t_2 = ucu_omega_4_in_axes4_z_2*ucu_omega_4_in_axes4_z_2
         ucu_mu_4_in_axes4_x = (
         ucu_B_4_in_axes4_yx*ucu_J_4_in_spec4_xy + ucu_B_4_in_axes4_zy*ucu_Sigma_4_in_axes4_yy +
-            ucu_J_4_in_spec4_xz*(ucu_phi_4_t_2 - ucu_mu_4_t) +
+            ucu_J_4_in_spec4_xz*(ucu_W_2_t_2 - ucu_mu_4_t_2) +
             ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_z - ucu_B_4_in_axes4_yz*ucu_Sigma_4_in_axes4_zz
             - ucu_B_4_in_axes4_zx*ucu_J_4_in_spec4_yz - ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_x
         )
         ucu_mu_4_in_axes4_y = (
         ucu_B_4_in_axes4_xz*ucu_Sigma_4_in_axes4_zz + ucu_B_4_in_axes4_zy*ucu_J_4_in_spec4_yz +
             ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_x - ucu_B_4_in_axes4_xy*ucu_J_4_in_spec4_xz -
-            ucu_B_4_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_phi_4_t -
-            ucu_mu_4_t) - ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_y
+            ucu_B_4_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_W_2_t -
+            ucu_mu_4_t_2) - ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_y
         )
         ucu_mu_4_in_axes4_z = (
-        ucu_B_4_in_axes4_xz*ucu_J_4_in_spec4_xz + ucu_B_4_in_axes4_yx*ucu_Sigma_4_in_axes4_xx +
-            ucu_J_4_in_spec4_yz*(ucu_phi_4_t - ucu_phi_4_t_2) +
-            ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_y - ucu_B_4_in_axes4_xy*ucu_Sigma_4_in_axes4_yy
-            - ucu_B_4_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_z
+        ucu_mu_4_t + ucu_B_4_in_axes4_xz*ucu_J_4_in_spec4_xz +
+            ucu_B_4_in_axes4_yx*ucu_Sigma_4_in_axes4_xx + ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_y
+            - ucu_B_4_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
+            ucu_B_4_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_z
         )
         # (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points
         ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
         ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
         ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2
-        ucu_mu_2_t_7 = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1
-        ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1
-        ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_t_7 + ucu_e_1_in_axes4_z*ucu_mu_2_t_3
-        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_c_2*ucu_mu_2_t_3
+        ucu_mu_2_t_7 = ucu_h_4_t_10*ucu_mu_2_t_2 + ucu_h_4_t_9*ucu_mu_2_t
+        ucu_g_in_axes2_z = ucu_h_4_t_9*ucu_mu_2_t_2 - ucu_h_4_t_10*ucu_mu_2_t
+        ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 + ucu_h_4_t_13*ucu_mu_2_t_7
+        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_h_4_t_13*ucu_mu_2_t_3
+        ucu_mu_2_t_8 = ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 - ucu_mu_2_t_6)
+        ucu_mu_2_t_9 = ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 - ucu_mu_2_t_6)
+        ucu_mu_2_t_10 = ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 - ucu_mu_2_t_5)
+        ucu_mu_2_t_11 = ucu_g_in_axes2_y*ucu_h_2_in_spec2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z
+        ucu_mu_2_t_12 = ucu_g_in_axes2_x*ucu_h_2_in_spec2_y - ucu_g_in_axes2_z*ucu_h_2_in_spec2_x
+        ucu_mu_2_t_13 = ucu_g_in_axes2_x*ucu_h_2_in_spec2_z + ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
         ucu_mu_2_in_axes2_x = (
-        ucu_B_2_in_axes2_yx*ucu_J_2_in_spec2_xy + ucu_B_2_in_axes2_zx*ucu_J_2_in_spec2_xz +
-            ucu_B_2_in_axes2_zy*ucu_Sigma_2_in_axes2_yy +
-            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y +
-            ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 -
-            ucu_mu_2_t_6)
+        ucu_mu_2_t_11 + ucu_B_2_in_axes2_yx*ucu_J_2_in_spec2_xy +
+            ucu_B_2_in_axes2_zx*ucu_J_2_in_spec2_xz + ucu_B_2_in_axes2_zy*ucu_Sigma_2_in_axes2_yy
+            + ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_x - ucu_mu_2_t_8
         )
         ucu_mu_2_in_axes2_y = (
-        ucu_B_2_in_axes2_xy*ucu_J_2_in_spec2_yz + ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_y +
-            ucu_g_in_axes2_z*ucu_h_2_in_spec2_x - ucu_B_2_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
-            ucu_B_2_in_axes2_zy*ucu_J_2_in_spec2_xz - ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 -
-            ucu_mu_2_t_6) - ucu_g_in_axes2_x*ucu_h_2_in_spec2_y
+        ucu_B_2_in_axes2_xy*ucu_J_2_in_spec2_yz + ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_y -
+            ucu_mu_2_t_12 - ucu_mu_2_t_9 - ucu_B_2_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
+            ucu_B_2_in_axes2_zy*ucu_J_2_in_spec2_xz
         )
         ucu_mu_2_in_axes2_z = (
         ucu_B_2_in_axes2_yx*ucu_Sigma_2_in_axes2_xx + ucu_J_2_in_spec2_xy*ucu_alpha_1_in_axes2_x -
-            ucu_B_2_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 -
-            ucu_mu_2_t_5) - ucu_J_2_in_spec2_yz*ucu_alpha_1_in_axes2_y -
-            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
+            ucu_mu_2_t_10 - ucu_mu_2_t_13 - ucu_B_2_in_axes2_xy*ucu_Sigma_2_in_axes2_yy -
+            ucu_J_2_in_spec2_yz*ucu_alpha_1_in_axes2_y
         )
         # (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         ucu_N_2_in_axes2_x = ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z
         ucu_N_2_in_axes2_y = (
-        ucu_mu_2_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x - ucu_c_4*ucu_mu_4_in_axes4_y
+        ucu_mu_2_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x -
+            ucu_e_2_in_axes4_x*ucu_mu_4_in_axes4_y
         )
         ucu_N_2_in_axes2_z = (
-        ucu_mu_2_in_axes2_z + ucu_c_4*ucu_mu_4_in_axes4_x + ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y
+        ucu_mu_2_in_axes2_z + ucu_e_2_in_axes4_x*ucu_mu_4_in_axes4_x +
+            ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y
         )
         # (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         ucu_G_m1_t = inv_ucu_end_p1_in_axes4_x*ucu_mu_4_in_axes4_z
         # (ucu-c) leg force on the platform without actuation and without the mass at the connection point
-        ucu_c_t = inv_ucu_root_2*(ucu_N_2_in_axes2_z + ucu_G_m1_t*ucu_n_m1_in_axes2_z)
+        ucu_c_t = inv_ucu_h_4_t_12*(ucu_N_2_in_axes2_z + ucu_G_m1_t*ucu_n_m1_in_axes2_z)
         ucu_c_t_2 = (
-        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*ucu_qd_4_t_4 + ucu_N_2_in_axes2_y*ucu_c_2 -
+        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*ucu_w_4_t + ucu_N_2_in_axes2_y*ucu_h_4_t_13 -
             ucu_N_2_in_axes2_x*ucu_e_1_in_axes4_z - ucu_c_t*ucu_v_1_t_2)
         )
         ucu_c_in_axes4_x = (
-        ucu_c_4*ucu_c_t_2 + ucu_h_4_in_spec4_y*(ucu_mu_4_t + ucu_phi_4_t_2) -
+        ucu_c_t_2*ucu_e_2_in_axes4_x + ucu_h_4_in_spec4_y*(ucu_W_2_t_2 + ucu_mu_4_t_2) -
             ucu_B_4_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_in_axes4_xz*ucu_h_4_in_spec4_x -
             ucu_c_t*ucu_e_2_in_axes4_y
         )
         ucu_c_in_axes4_y = (
-        ucu_c_4*ucu_c_t + ucu_c_t_2*ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_mu_4_t +
-            ucu_phi_4_t) - ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y -
+        ucu_c_t*ucu_e_2_in_axes4_x + ucu_c_t_2*ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_W_2_t
+            + ucu_mu_4_t_2) - ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y -
             ucu_B_4_in_axes4_yz*ucu_h_4_in_spec4_x
         )
         ucu_c_x = (
         axis_x_ucu_axes4_x*ucu_c_in_axes4_x + axis_y_ucu_axes4_x*ucu_c_in_axes4_y -
-            ucu_phi_4_in_axes4_z*ucu_w_3_x
+            axis_z_ucu_axes4_x*ucu_phi_4_in_axes4_z
         )
         ucu_c_y = (
         axis_x_ucu_axes4_y*ucu_c_in_axes4_x + axis_y_ucu_axes4_y*ucu_c_in_axes4_y -
-            ucu_phi_4_in_axes4_z*ucu_w_3_y
+            axis_z_ucu_axes4_y*ucu_phi_4_in_axes4_z
         )
         ucu_c_z = (
         axis_x_ucu_axes4_z*ucu_c_in_axes4_x + axis_y_ucu_axes4_z*ucu_c_in_axes4_y -
-            ucu_phi_4_in_axes4_z*ucu_w_3_z
+            axis_z_ucu_axes4_z*ucu_phi_4_in_axes4_z
         )
         # (ucu-c_m) moment of the leg on the platform without actuation
         ucu_c_m_in_axes4_x = ucu_G_m1_t*ucu_n_m1_in_axes4_x
+        ucu_c_m_x = axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x - axis_z_ucu_axes4_x*ucu_mu_4_in_axes4_z
+        ucu_c_m_y = axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x - axis_z_ucu_axes4_y*ucu_mu_4_in_axes4_z
+        ucu_c_m_z = axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x - axis_z_ucu_axes4_z*ucu_mu_4_in_axes4_z
         # (R_a) moment that actuators and external wrench must give
-        ucu_R_a_t = (
-        ucu_c_y*ucu_q_z + ucu_mu_4_in_axes4_z*ucu_w_3_x - axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x -
-            ucu_c_z*ucu_q_y
-        )
-        ucu_R_a_t_2 = (
-        ucu_c_z*ucu_q_x + ucu_mu_4_in_axes4_z*ucu_w_3_y - axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x -
-            ucu_c_x*ucu_q_z
-        )
-        ucu_R_a_t_3 = (
-        ucu_c_x*ucu_q_y + ucu_mu_4_in_axes4_z*ucu_w_3_z - axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x -
-            ucu_c_y*ucu_q_x
-        )
+        ucu_R_a_t = ucu_c_y*ucu_q_z - ucu_c_m_x - ucu_c_z*ucu_q_y
+        ucu_R_a_t_2 = ucu_c_z*ucu_q_x - ucu_c_m_y - ucu_c_x*ucu_q_z
+        ucu_R_a_t_3 = ucu_c_x*ucu_q_y - ucu_c_m_z - ucu_c_y*ucu_q_x
         # (ucu-H_a_3) moment of the column's unit force about the platform origin
-        ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y
-        ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z
-        ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x
+        ucu_H_a_3_x = axis_z_ucu_axes4_z*ucu_q_y - axis_z_ucu_axes4_y*ucu_q_z
+        ucu_H_a_3_y = axis_z_ucu_axes4_x*ucu_q_z - axis_z_ucu_axes4_z*ucu_q_x
+        ucu_H_a_3_z = axis_z_ucu_axes4_y*ucu_q_x - axis_z_ucu_axes4_x*ucu_q_y
         ok = (
-        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
-            _TOLERANCE * 0.8)
+        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
+            > _TOLERANCE * 0.8)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += ucu_c_x
@@ -4675,9 +4697,9 @@ def _run_required(m, X, V, A):
         R_a_ucu_y += ucu_R_a_t_2
         R_a_ucu_z += ucu_R_a_t_3
         # (ucu-w_3) force part of reciprocal wrench 3
-        out_H[_H_ucu[0][leg]] = ucu_w_3_x
-        out_H[_H_ucu[1][leg]] = ucu_w_3_y
-        out_H[_H_ucu[2][leg]] = ucu_w_3_z
+        out_H[_H_ucu[0][leg]] = axis_z_ucu_axes4_x
+        out_H[_H_ucu[1][leg]] = axis_z_ucu_axes4_y
+        out_H[_H_ucu[2][leg]] = axis_z_ucu_axes4_z
         # (ucu-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ucu[3][leg]] = ucu_H_a_3_x
         out_H[_H_ucu[4][leg]] = ucu_H_a_3_y
@@ -4752,98 +4774,93 @@ def _run_inverse_kinematics(m, X):
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-S) from the base point to the connection point
-        ucu_S_x = (
-        t_x + R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z -
-            ucu_base_point_x
+        # (ucu-h_4) first moment of link 4 about the connection point
+        ucu_q_x = (
+        R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        ucu_S_y = (
-        t_y + R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z -
-            ucu_base_point_y
+        ucu_q_y = (
+        R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        ucu_S_z = (
-        t_z + R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z -
-            ucu_base_point_z
+        ucu_q_z = (
+        R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_in_turn1_x = (
-        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
+        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
+        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
+        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
+        ucu_h_4_t_4 = (
+        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+            ucu_base_frame_zx*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_y = (
-        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
+        ucu_h_4_t_5 = (
+        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+            ucu_base_frame_zy*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_z = (
-        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
+        ucu_h_4_t_6 = (
+        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+            ucu_base_frame_zz*ucu_h_4_t_3
         )
-        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
-        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
-        # (ucu-q_1) displacement of joint 1
-        ucu_q_1 = atan2(ucu_s_1, ucu_c_1)
-        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
-        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
-        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
-        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
-        # (ucu-q_2) displacement of joint 2
-        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
-        ucu_q_2 = atan2(-ucu_e_1_in_axes4_z, ucu_c_2)
-        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
-        ucu_root_4_t = (
+        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
+        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
+        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
+        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
+        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
+        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
+        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
+        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
+        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
+        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
+        ucu_h_4_t_14 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_root_4_t_2 = (
+        ucu_h_4_t_15 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_root_4_t_3 = (
+        ucu_h_4_t_16 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
-        ucu_root_4_t_4 = (
-        ucu_e_1_in_axes4_z*(ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1) -
-            ucu_c_2*ucu_root_4_t_3
-        )
-        ucu_root_4_t_5 = (
-        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_4*ucu_root_4_t_4
-        )
-        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_5)
+        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
+        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
+        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
+        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
+        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
+        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
+        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
+        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
+        # (ucu-q_1) displacement of joint 1
+        ucu_q_1 = atan2(ucu_h_4_t_10, ucu_h_4_t_9)
+        # (ucu-q_2) displacement of joint 2
+        ucu_q_2 = atan2(-ucu_e_1_in_axes4_z, ucu_h_4_t_13)
         # (ucu-q_4) displacement of joint 4
-        inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_q_4 = atan2(-inv_ucu_root_4*ucu_root_4_t_4, inv_ucu_root_4*ucu_end_p1_in_turn4_x)
+        ucu_q_4 = atan2(-ucu_e_2_in_axes4_y, ucu_e_2_in_axes4_x)
         ok = (
-        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_4_t_5) > _TOLERANCE * _TOLERANCE * 1.0)
+        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0)
         )
         # (ucu-q_1) displacement of joint 1
         out_q[_q_ucu[0][leg]] = ucu_q_1
         # (ucu-q_2) displacement of joint 2
         out_q[_q_ucu[1][leg]] = ucu_q_2
         # (ucu-q_3) displacement of joint 3
-        out_q[_q_ucu[2][leg]] = ucu_root_2
+        out_q[_q_ucu[2][leg]] = ucu_h_4_t_12
         # (ucu-q_4) displacement of joint 4
         out_q[_q_ucu[3][leg]] = ucu_q_4
     return ok, (out_q,)
 
 
-# joint_rates: 876 mul, 528 add, 30 div, 18 sqrt, 0 trig
+# joint_rates: 888 mul, 528 add, 30 div, 18 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -4906,7 +4923,7 @@ def _run_joint_rates(m, X, V):
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-S) from the base point to the connection point
+        # (ucu-h_4) first moment of link 4 about the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -4916,137 +4933,156 @@ def _run_joint_rates(m, X, V):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
-        ucu_S_in_turn1_x = (
-        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
+        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
+        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
+        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
+        ucu_h_4_t_4 = (
+        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+            ucu_base_frame_zx*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_y = (
-        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
+        ucu_h_4_t_5 = (
+        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+            ucu_base_frame_zy*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_z = (
-        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
+        ucu_h_4_t_6 = (
+        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+            ucu_base_frame_zz*ucu_h_4_t_3
         )
-        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
-        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
-        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
-        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
-        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
-        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
-        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
-        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
-        ucu_root_4_t = (
+        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
+        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
+        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
+        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
+        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
+        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
+        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
+        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
+        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
+        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
+        ucu_h_4_t_14 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_root_4_t_2 = (
+        ucu_h_4_t_15 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_root_4_t_3 = (
+        ucu_h_4_t_16 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
-        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
-        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
-        ucu_root_4_t_6 = (
-        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
-        )
-        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
-        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
-        inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
+        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
+        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
+        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
+        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
+        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
+        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
+        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
         # (ucu-S_dot) velocity of the connection point
-        ucu_S_dot_x = t_dot_x + omega_y*ucu_q_z - omega_z*ucu_q_y
-        ucu_S_dot_y = t_dot_y + omega_z*ucu_q_x - omega_x*ucu_q_z
-        ucu_S_dot_z = t_dot_z + omega_x*ucu_q_y - omega_y*ucu_q_x
-        ucu_S_dot_t = (
+        ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
+        ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
+        ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x
+        ucu_S_dot_x = t_dot_x + ucu_S_dot_t
+        ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2
+        ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3
+        ucu_S_dot_t_4 = (
         ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
             ucu_S_dot_z*ucu_base_frame_zx
         )
-        ucu_S_dot_t_2 = (
+        ucu_S_dot_t_5 = (
         ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
             ucu_S_dot_z*ucu_base_frame_zy
         )
-        ucu_S_dot_t_3 = (
+        ucu_S_dot_t_6 = (
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_t_4 = ucu_S_dot_t*ucu_c_1 + ucu_S_dot_t_2*ucu_s_1
-        ucu_S_dot_in_axes2_x = ucu_S_dot_t_3*ucu_e_1_in_axes4_z + ucu_S_dot_t_4*ucu_c_2
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_9 + ucu_S_dot_t_5*ucu_h_4_t_10
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_h_4_t_13
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
-        ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y
-        ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4
-        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
-        ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t
-        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 + ucu_e_1_in_axes4_z*ucu_root_4_t_3
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_5
-        # (ucu-w_3) force part of reciprocal wrench 3
-        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
-        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
-        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
-        # (ucu-qd_1) rate of joint 1
-        ucu_qd_1 = (ucu_S_dot_t_2*ucu_c_1 - ucu_S_dot_t*ucu_s_1)/ucu_v_1_in_axes2_z
-        # (ucu-qd_2) rate of joint 2
-        ucu_qd_2 = (
-        inv_ucu_root_2*(ucu_S_dot_t_4*ucu_e_1_in_axes4_z + ucu_qd_1*(ucu_c_4*ucu_v_1_in_axes4_y -
-            ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x) - ucu_S_dot_t_3*ucu_c_2)
+        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
+        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
+        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
+        ucu_v_1_in_axes2_z = (
+        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
         )
-        # (ucu-qd_4) rate of joint 4
-        ucu_qd_4_t = ucu_c_4*ucu_e_1_in_axes4_z
-        ucu_qd_4_t_2 = -ucu_c_1*ucu_qd_4_t - ucu_e_2_in_axes4_y*ucu_s_1
-        ucu_qd_4_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_qd_4_t*ucu_s_1
+        ucu_v_1_t_2 = (
+        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
+        )
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 + ucu_h_4_t_13*ucu_h_4_t_17
+        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
+        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
+        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
+        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
+        ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t
+        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t
         axis_y_ucu_axes4_x = (
-        ucu_base_frame_xx*ucu_qd_4_t_2 + ucu_base_frame_xy*ucu_qd_4_t_3 +
+        ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
             ucu_base_frame_xz*ucu_e_1_in_axes4_y
         )
         axis_y_ucu_axes4_y = (
-        ucu_base_frame_yx*ucu_qd_4_t_2 + ucu_base_frame_yy*ucu_qd_4_t_3 +
+        ucu_base_frame_yx*ucu_n_m1_t_2 + ucu_base_frame_yy*ucu_n_m1_t_3 +
             ucu_base_frame_yz*ucu_e_1_in_axes4_y
         )
         axis_y_ucu_axes4_z = (
-        ucu_base_frame_zx*ucu_qd_4_t_2 + ucu_base_frame_zy*ucu_qd_4_t_3 +
+        ucu_base_frame_zx*ucu_n_m1_t_2 + ucu_base_frame_zy*ucu_n_m1_t_3 +
             ucu_base_frame_zz*ucu_e_1_in_axes4_y
         )
-        ucu_qd_4_t_4 = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
-        ucu_qd_4_t_5 = (
-        ucu_n_m1_in_axes4_x*(omega_x*(axis_y_ucu_axes4_y*ucu_w_3_z - axis_y_ucu_axes4_z*ucu_w_3_y)
-            + omega_y*(axis_y_ucu_axes4_z*ucu_w_3_x - axis_y_ucu_axes4_x*ucu_w_3_z) +
-            omega_z*(axis_y_ucu_axes4_x*ucu_w_3_y - axis_y_ucu_axes4_y*ucu_w_3_x))
+        axis_x_ucu_axes4_x = (
+        axis_y_ucu_axes4_y*axis_z_ucu_axes4_z - axis_y_ucu_axes4_z*axis_z_ucu_axes4_y
         )
-        ucu_qd_4 = (
-        omega_x*ucu_w_3_x + omega_y*ucu_w_3_y + omega_z*ucu_w_3_z - (ucu_qd_4_t_5 +
-            ucu_qd_1*ucu_qd_4_t_4 - ucu_c_4*ucu_n_m1_in_axes4_x*ucu_qd_2)/ucu_end_p1_in_axes4_x
+        axis_x_ucu_axes4_y = (
+        axis_y_ucu_axes4_z*axis_z_ucu_axes4_x - axis_y_ucu_axes4_x*axis_z_ucu_axes4_z
+        )
+        axis_x_ucu_axes4_z = (
+        axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
+        )
+        ucu_end_p1_in_axes4_x = (
+        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
+        )
+        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        # (ucu-w_1) force part of reciprocal wrench 1
+        inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
+        # (ucu-w_4) force part of reciprocal wrench 4
+        ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
+        inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
+        # (ucu-qd_1) rate of joint 1
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_h_4_t_9 - ucu_S_dot_t_4*ucu_h_4_t_10)
+        # (ucu-qd_2) rate of joint 2
+        ucu_qd_2 = (
+        inv_ucu_h_4_t_12*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
+            ucu_S_dot_t_6*ucu_h_4_t_13)
+        )
+        # (ucu-qd_4) rate of joint 4
+        ucu_qd_4_t = ucu_qd_1*ucu_w_4_t
+        ucu_qd_4_t_2 = ucu_n_m1_in_axes2_z*ucu_qd_2
+        ucu_omega_in_axes4_x = (
+        axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
+        )
+        ucu_omega_in_axes4_z = (
+        axis_z_ucu_axes4_x*omega_x + axis_z_ucu_axes4_y*omega_y + axis_z_ucu_axes4_z*omega_z
+        )
+        ucu_qd_4_2 = (
+        ucu_omega_in_axes4_z - inv_ucu_end_p1_in_axes4_x*(ucu_qd_4_t +
+            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x - ucu_qd_4_t_2)
         )
         ok = (
-        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
-            _TOLERANCE * 0.8)
+        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
+            > _TOLERANCE * 0.8)
         )
         # (ucu-qd_1) rate of joint 1
         out_qd[_qd_ucu[0][leg]] = ucu_qd_1
@@ -5055,11 +5091,11 @@ def _run_joint_rates(m, X, V):
         # (ucu-qd_3) rate of joint 3
         out_qd[_qd_ucu[2][leg]] = ucu_S_dot_in_axes2_x
         # (ucu-qd_4) rate of joint 4
-        out_qd[_qd_ucu[3][leg]] = ucu_qd_4
+        out_qd[_qd_ucu[3][leg]] = ucu_qd_4_2
     return ok, (out_qd,)
 
 
-# joint_accelerations: 1356 mul, 864 add, 30 div, 18 sqrt, 0 trig
+# joint_accelerations: 1344 mul, 855 add, 30 div, 18 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -5126,6 +5162,23 @@ def _run_joint_accelerations(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
@@ -5135,7 +5188,7 @@ def _run_joint_accelerations(m, X, V, A):
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-S) from the base point to the connection point
+        # (ucu-h_4) first moment of link 4 about the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -5145,65 +5198,60 @@ def _run_joint_accelerations(m, X, V, A):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
-        ucu_S_in_turn1_x = (
-        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
+        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
+        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
+        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
+        ucu_h_4_t_4 = (
+        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+            ucu_base_frame_zx*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_y = (
-        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
+        ucu_h_4_t_5 = (
+        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+            ucu_base_frame_zy*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_z = (
-        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
+        ucu_h_4_t_6 = (
+        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+            ucu_base_frame_zz*ucu_h_4_t_3
         )
-        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
-        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
-        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
-        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
-        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
-        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
-        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
-        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
-        ucu_root_4_t = (
+        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
+        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
+        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
+        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
+        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
+        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
+        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
+        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
+        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
+        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
+        ucu_h_4_t_14 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_root_4_t_2 = (
+        ucu_h_4_t_15 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_root_4_t_3 = (
+        ucu_h_4_t_16 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
-        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
-        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
-        ucu_root_4_t_6 = (
-        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
-        )
-        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
-        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
-        inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
+        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
+        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
+        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
+        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
+        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
+        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
+        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
         # (ucu-S_dot) velocity of the connection point
         ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
         ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
@@ -5223,163 +5271,185 @@ def _run_joint_accelerations(m, X, V, A):
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1
-        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_c_2
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_9 + ucu_S_dot_t_5*ucu_h_4_t_10
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_h_4_t_13
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
-        ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y
-        ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4
-        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
-        ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t
-        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
-        ucu_v_1_t_2 = ucu_c_4*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 + ucu_e_1_in_axes4_z*ucu_root_4_t_3
-        ucu_n_m1_in_axes2_z = ucu_c_4*ucu_n_m1_in_axes4_x
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_5
-        # (ucu-w_3) force part of reciprocal wrench 3
-        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
-        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
-        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
-        # (ucu-m1_w_4) moment part 1 of reciprocal wrench 4
-        inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
-        # (ucu-qd_1) rate of joint 1
-        inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
-        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_c_1 - ucu_S_dot_t_4*ucu_s_1)
-        # (ucu-qd_2) rate of joint 2
-        ucu_qd_2 = (
-        inv_ucu_root_2*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
-            ucu_S_dot_t_6*ucu_c_2)
+        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
+        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
+        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
+        ucu_v_1_in_axes2_z = (
+        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
         )
-        # (ucu-qd_4) rate of joint 4
-        ucu_qd_4_t = ucu_c_4*ucu_e_1_in_axes4_z
-        ucu_qd_4_t_2 = -ucu_c_1*ucu_qd_4_t - ucu_e_2_in_axes4_y*ucu_s_1
-        ucu_qd_4_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_qd_4_t*ucu_s_1
+        ucu_v_1_t_2 = (
+        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
+        )
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 + ucu_h_4_t_13*ucu_h_4_t_17
+        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
+        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
+        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
+        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
+        ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t
+        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t
         axis_y_ucu_axes4_x = (
-        ucu_base_frame_xx*ucu_qd_4_t_2 + ucu_base_frame_xy*ucu_qd_4_t_3 +
+        ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
             ucu_base_frame_xz*ucu_e_1_in_axes4_y
         )
         axis_y_ucu_axes4_y = (
-        ucu_base_frame_yx*ucu_qd_4_t_2 + ucu_base_frame_yy*ucu_qd_4_t_3 +
+        ucu_base_frame_yx*ucu_n_m1_t_2 + ucu_base_frame_yy*ucu_n_m1_t_3 +
             ucu_base_frame_yz*ucu_e_1_in_axes4_y
         )
         axis_y_ucu_axes4_z = (
-        ucu_base_frame_zx*ucu_qd_4_t_2 + ucu_base_frame_zy*ucu_qd_4_t_3 +
+        ucu_base_frame_zx*ucu_n_m1_t_2 + ucu_base_frame_zy*ucu_n_m1_t_3 +
             ucu_base_frame_zz*ucu_e_1_in_axes4_y
         )
-        axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z - axis_y_ucu_axes4_z*ucu_w_3_y
-        axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x - axis_y_ucu_axes4_x*ucu_w_3_z
-        axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y - axis_y_ucu_axes4_y*ucu_w_3_x
-        ucu_qd_4_t_4 = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
+        axis_x_ucu_axes4_x = (
+        axis_y_ucu_axes4_y*axis_z_ucu_axes4_z - axis_y_ucu_axes4_z*axis_z_ucu_axes4_y
+        )
+        axis_x_ucu_axes4_y = (
+        axis_y_ucu_axes4_z*axis_z_ucu_axes4_x - axis_y_ucu_axes4_x*axis_z_ucu_axes4_z
+        )
+        axis_x_ucu_axes4_z = (
+        axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
+        )
+        ucu_end_p1_in_axes4_x = (
+        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
+        )
+        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        # (ucu-w_1) force part of reciprocal wrench 1
+        inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
+        # (ucu-w_4) force part of reciprocal wrench 4
+        ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
+        inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
+        # (ucu-qd_1) rate of joint 1
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_h_4_t_9 - ucu_S_dot_t_4*ucu_h_4_t_10)
+        # (ucu-qd_2) rate of joint 2
+        ucu_qd_2 = (
+        inv_ucu_h_4_t_12*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
+            ucu_S_dot_t_6*ucu_h_4_t_13)
+        )
+        # (ucu-qd_4) rate of joint 4
+        ucu_qd_4_t = ucu_qd_1*ucu_w_4_t
+        ucu_qd_4_t_2 = ucu_n_m1_in_axes2_z*ucu_qd_2
         ucu_omega_in_axes4_x = (
         axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
         )
-        ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y + omega_z*ucu_w_3_z
-        ucu_qd_4 = (
-        ucu_omega_in_axes4_z - inv_ucu_end_p1_in_axes4_x*(ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x
-            + ucu_qd_1*ucu_qd_4_t_4 - ucu_n_m1_in_axes2_z*ucu_qd_2)
+        ucu_omega_in_axes4_z = (
+        axis_z_ucu_axes4_x*omega_x + axis_z_ucu_axes4_y*omega_y + axis_z_ucu_axes4_z*omega_z
+        )
+        ucu_qd_4_2 = (
+        ucu_omega_in_axes4_z - inv_ucu_end_p1_in_axes4_x*(ucu_qd_4_t +
+            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x - ucu_qd_4_t_2)
         )
         # (ucu-omega_1) angular velocity of link 1
         ucu_omega_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qd_1
-        ucu_omega_1_in_axes2_y = -ucu_c_2*ucu_qd_1
+        ucu_omega_1_in_axes2_y = -ucu_h_4_t_13*ucu_qd_1
         # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_in_axes4_x = ucu_c_4*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
-        ucu_omega_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_c_4*ucu_omega_1_in_axes2_y
+        ucu_omega_2_in_axes4_x = (
+        ucu_e_2_in_axes4_x*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
+        )
+        ucu_omega_2_in_axes4_y = (
+        ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y
+        )
         # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
         ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
+        ucu_W_2_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_W_2_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
+        ucu_W_2_t_3 = ucu_W_2_t + ucu_W_2_t_2
         # (ucu-omega_4) angular velocity of link 4
-        ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4
-        # (ucu-a_p) acceleration of the connection point without its centripetal part
-        ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_z - alpha_z*ucu_q_y
-        ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_x - alpha_x*ucu_q_z
-        ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_y - alpha_y*ucu_q_x
+        ucu_omega_4_in_axes4_z_2 = ucu_omega_1_in_axes2_x + ucu_qd_4_2
         # (ucu-S_ddot) acceleration of the connection point
-        ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2
-        ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3
-        ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t
+        ucu_S_ddot_x = t_ddot_x + B_p_xy*ucu_q_y + B_p_xz*ucu_q_z - W_p_t_4*ucu_q_x
+        ucu_S_ddot_y = t_ddot_y + B_p_yx*ucu_q_x + B_p_yz*ucu_q_z - W_p_t_5*ucu_q_y
+        ucu_S_ddot_z = t_ddot_z + B_p_zx*ucu_q_x + B_p_zy*ucu_q_y - W_p_t_6*ucu_q_z
+        ucu_S_ddot_in_axes4_x = (
+        axis_x_ucu_axes4_x*ucu_S_ddot_x + axis_x_ucu_axes4_y*ucu_S_ddot_y +
+            axis_x_ucu_axes4_z*ucu_S_ddot_z
+        )
+        ucu_S_ddot_in_axes4_y = (
+        axis_y_ucu_axes4_x*ucu_S_ddot_x + axis_y_ucu_axes4_y*ucu_S_ddot_y +
+            axis_y_ucu_axes4_z*ucu_S_ddot_z
+        )
+        ucu_S_ddot_in_axes4_z = (
+        axis_z_ucu_axes4_x*ucu_S_ddot_x + axis_z_ucu_axes4_y*ucu_S_ddot_y +
+            axis_z_ucu_axes4_z*ucu_S_ddot_z
+        )
         # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
         ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_y
+        # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        ucu_zeta_4_in_axes4_x_2 = ucu_omega_2_in_axes4_y*ucu_qd_4_2
         # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
-        ucu_beta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4 - ucu_zeta_2_t
+        ucu_beta_4_in_axes4_x_2 = ucu_zeta_4_in_axes4_x_2 - ucu_zeta_2_t
         # (ucu-bias) acceleration of the connection point at zero joint accelerations
         ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
         ucu_bias_in_axes4_x = (
-        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_c_4 +
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_h_4_t_12*(ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_x +
             ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
         )
         ucu_bias_in_axes4_y = (
-        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+        ucu_h_4_t_12*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
             ucu_bias_t*ucu_omega_2_in_axes4_x
         )
         # (ucu-rel) acceleration of the connection point left to the joint accelerations
-        ucu_rel_in_axes4_x = (
-        axis_x_ucu_axes4_x*ucu_S_ddot_x + axis_x_ucu_axes4_y*ucu_S_ddot_y +
-            axis_x_ucu_axes4_z*ucu_S_ddot_z - ucu_bias_in_axes4_x
-        )
-        ucu_rel_in_axes4_y = (
-        axis_y_ucu_axes4_x*ucu_S_ddot_x + axis_y_ucu_axes4_y*ucu_S_ddot_y +
-            axis_y_ucu_axes4_z*ucu_S_ddot_z - ucu_bias_in_axes4_y
-        )
-        ucu_rel_in_axes4_z = (
-        ucu_S_ddot_x*ucu_w_3_x + ucu_S_ddot_y*ucu_w_3_y + ucu_S_ddot_z*ucu_w_3_z +
-            ucu_root_2*(ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x +
-            ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y)
-        )
+        ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_bias_in_axes4_x
+        ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_bias_in_axes4_y
+        ucu_rel_in_axes4_z = ucu_S_ddot_in_axes4_z + ucu_W_2_t_3*ucu_h_4_t_12
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_c_4*ucu_root_4_t_5
+        ucu_end_p1_in_axes4_y = (
+        ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_e_2_in_axes4_x*ucu_h_4_t_18
+        )
         ucu_omega_in_axes4_y = (
         axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
+        )
+        ucu_nd_m1_t = (
+        ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y - ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z
         )
         ucu_nd_m1_in_axes4_x = (
         ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
             ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x
         )
-        ucu_nd_m1_in_axes4_z = (
-        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z
-            - ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y
-        )
+        ucu_nd_m1_in_axes4_z_2 = -ucu_nd_m1_t - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z_2
         # (ucu-nu_1) bias of the angular acceleration along moment direction 1
-        ucu_nu_1_t = (
-        ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x -
-            ucu_end_p1_in_axes4_x*ucu_omega_1_in_axes2_y*ucu_qd_2
+        ucu_nu_1_t = ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_nu_1_t_2 = -ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x
+        ucu_nu_1_t_4 = ucu_omega_2_in_axes4_y - ucu_omega_in_axes4_y
+        ucu_nu_1_t_5 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x)
+        ucu_nu_1_t_7 = ucu_nu_1_t_2 + ucu_beta_4_in_axes4_x_2*ucu_n_m1_in_axes4_x
+        ucu_nu_1_t_8 = (
+        ucu_nu_1_t_5 + ucu_nd_m1_in_axes4_z_2*(ucu_omega_4_in_axes4_z_2 - ucu_omega_in_axes4_z) +
+            ucu_nu_1_t_4*(ucu_nu_1_t + ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z_2)
         )
-        ucu_nu_1_t_2 = (
-        ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x) +
-            ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z - ucu_omega_in_axes4_z) +
-            (ucu_omega_2_in_axes4_y -
-            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
-            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
-        )
-        ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
+        ucu_nu_1_2 = -ucu_nu_1_t_7 - ucu_nu_1_t_8
         # (ucu-etad_1) acceleration with which the joints turn along moment direction 1
         ucu_etad_1_t = (
         ucu_n_m1_in_axes4_x*(alpha_x*axis_x_ucu_axes4_x + alpha_y*axis_x_ucu_axes4_y +
-            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_in_axes4_x*(alpha_x*ucu_w_3_x +
-            alpha_y*ucu_w_3_y + alpha_z*ucu_w_3_z)
+            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_in_axes4_x*(alpha_x*axis_z_ucu_axes4_x +
+            alpha_y*axis_z_ucu_axes4_y + alpha_z*axis_z_ucu_axes4_z)
         )
-        ucu_etad_1 = ucu_etad_1_t + ucu_nu_1
+        ucu_etad_1 = ucu_etad_1_t + ucu_nu_1_2
         # (ucu-qdd_1) acceleration of joint 1
         ucu_qdd_1 = (
-        inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_x +
+        inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y)
         )
         # (ucu-qdd_2) acceleration of joint 2
         ucu_qdd_2 = (
-        inv_ucu_root_2*(ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x + ucu_qdd_1*ucu_v_1_t_2 -
-            ucu_c_4*ucu_rel_in_axes4_y)
+        inv_ucu_h_4_t_12*(ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x + ucu_qdd_1*ucu_v_1_t_2 -
+            ucu_e_2_in_axes4_x*ucu_rel_in_axes4_y)
         )
         # (ucu-qdd_4) acceleration of joint 4
         ucu_qdd_4_t = (
-        inv_ucu_end_p1_in_axes4_x*(ucu_etad_1 + ucu_qd_4_t_4*ucu_qdd_1 -
+        inv_ucu_end_p1_in_axes4_x*(ucu_etad_1 + ucu_qdd_1*ucu_w_4_t -
             ucu_n_m1_in_axes2_z*ucu_qdd_2)
         )
         ok = (
-        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
-            _TOLERANCE * 0.8)
+        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
+            > _TOLERANCE * 0.8)
         )
         # (ucu-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ucu[0][leg]] = ucu_qdd_1
@@ -5392,7 +5462,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 2058 mul, 1488 add, 30 div, 18 sqrt, 0 trig
+# legs: 2046 mul, 1479 add, 30 div, 18 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -5461,6 +5531,23 @@ def _run_legs(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yz, ucu_J_4_in_spec4_xy,
@@ -5476,7 +5563,7 @@ def _run_legs(m, X, V, A):
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-S) from the base point to the connection point
+        # (ucu-h_4) first moment of link 4 about the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -5486,65 +5573,60 @@ def _run_legs(m, X, V, A):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
-        ucu_S_in_turn1_x = (
-        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
+        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
+        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
+        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
+        ucu_h_4_t_4 = (
+        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+            ucu_base_frame_zx*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_y = (
-        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
+        ucu_h_4_t_5 = (
+        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+            ucu_base_frame_zy*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_z = (
-        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
+        ucu_h_4_t_6 = (
+        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+            ucu_base_frame_zz*ucu_h_4_t_3
         )
-        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
-        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
-        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
-        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
-        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
-        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
-        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
-        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
-        ucu_root_4_t = (
+        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
+        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
+        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
+        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
+        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
+        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
+        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
+        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
+        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
+        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
+        ucu_h_4_t_14 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_root_4_t_2 = (
+        ucu_h_4_t_15 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_root_4_t_3 = (
+        ucu_h_4_t_16 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
-        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
-        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
-        ucu_root_4_t_6 = (
-        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
-        )
-        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
-        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
-        inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
+        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
+        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
+        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
+        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
+        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
+        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
+        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
         # (ucu-S_dot) velocity of the connection point
         ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
         ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
@@ -5564,87 +5646,104 @@ def _run_legs(m, X, V, A):
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1
-        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_c_2
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_9 + ucu_S_dot_t_5*ucu_h_4_t_10
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_h_4_t_13
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
-        ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y
-        ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4
-        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
-        ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t
-        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
-        ucu_v_1_t_2 = ucu_c_4*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 + ucu_e_1_in_axes4_z*ucu_root_4_t_3
-        ucu_n_m1_in_axes2_z = ucu_c_4*ucu_n_m1_in_axes4_x
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_5
-        # (ucu-w_3) force part of reciprocal wrench 3
-        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
-        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
-        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
-        # (ucu-m1_w_4) moment part 1 of reciprocal wrench 4
-        inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
-        # (ucu-qd_1) rate of joint 1
-        inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
-        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_c_1 - ucu_S_dot_t_4*ucu_s_1)
-        # (ucu-qd_2) rate of joint 2
-        ucu_qd_2 = (
-        inv_ucu_root_2*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
-            ucu_S_dot_t_6*ucu_c_2)
+        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
+        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
+        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
+        ucu_v_1_in_axes2_z = (
+        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
         )
-        # (ucu-qd_4) rate of joint 4
-        ucu_qd_4_t = ucu_c_4*ucu_e_1_in_axes4_z
-        ucu_qd_4_t_2 = -ucu_c_1*ucu_qd_4_t - ucu_e_2_in_axes4_y*ucu_s_1
-        ucu_qd_4_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_qd_4_t*ucu_s_1
+        ucu_v_1_t_2 = (
+        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
+        )
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 + ucu_h_4_t_13*ucu_h_4_t_17
+        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
+        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
+        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
+        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
+        ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t
+        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t
         axis_y_ucu_axes4_x = (
-        ucu_base_frame_xx*ucu_qd_4_t_2 + ucu_base_frame_xy*ucu_qd_4_t_3 +
+        ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
             ucu_base_frame_xz*ucu_e_1_in_axes4_y
         )
         axis_y_ucu_axes4_y = (
-        ucu_base_frame_yx*ucu_qd_4_t_2 + ucu_base_frame_yy*ucu_qd_4_t_3 +
+        ucu_base_frame_yx*ucu_n_m1_t_2 + ucu_base_frame_yy*ucu_n_m1_t_3 +
             ucu_base_frame_yz*ucu_e_1_in_axes4_y
         )
         axis_y_ucu_axes4_z = (
-        ucu_base_frame_zx*ucu_qd_4_t_2 + ucu_base_frame_zy*ucu_qd_4_t_3 +
+        ucu_base_frame_zx*ucu_n_m1_t_2 + ucu_base_frame_zy*ucu_n_m1_t_3 +
             ucu_base_frame_zz*ucu_e_1_in_axes4_y
         )
-        axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z - axis_y_ucu_axes4_z*ucu_w_3_y
-        axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x - axis_y_ucu_axes4_x*ucu_w_3_z
-        axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y - axis_y_ucu_axes4_y*ucu_w_3_x
-        ucu_qd_4_t_4 = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
+        axis_x_ucu_axes4_x = (
+        axis_y_ucu_axes4_y*axis_z_ucu_axes4_z - axis_y_ucu_axes4_z*axis_z_ucu_axes4_y
+        )
+        axis_x_ucu_axes4_y = (
+        axis_y_ucu_axes4_z*axis_z_ucu_axes4_x - axis_y_ucu_axes4_x*axis_z_ucu_axes4_z
+        )
+        axis_x_ucu_axes4_z = (
+        axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
+        )
+        ucu_end_p1_in_axes4_x = (
+        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
+        )
+        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        # (ucu-w_1) force part of reciprocal wrench 1
+        inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
+        # (ucu-w_4) force part of reciprocal wrench 4
+        ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
+        inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
+        # (ucu-qd_1) rate of joint 1
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_h_4_t_9 - ucu_S_dot_t_4*ucu_h_4_t_10)
+        # (ucu-qd_2) rate of joint 2
+        ucu_qd_2 = (
+        inv_ucu_h_4_t_12*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
+            ucu_S_dot_t_6*ucu_h_4_t_13)
+        )
+        # (ucu-qd_4) rate of joint 4
+        ucu_qd_4_t = ucu_qd_1*ucu_w_4_t
+        ucu_qd_4_t_2 = ucu_n_m1_in_axes2_z*ucu_qd_2
         ucu_omega_in_axes4_x = (
         axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
         )
-        ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y + omega_z*ucu_w_3_z
-        ucu_qd_4 = (
-        ucu_omega_in_axes4_z - inv_ucu_end_p1_in_axes4_x*(ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x
-            + ucu_qd_1*ucu_qd_4_t_4 - ucu_n_m1_in_axes2_z*ucu_qd_2)
+        ucu_omega_in_axes4_z = (
+        axis_z_ucu_axes4_x*omega_x + axis_z_ucu_axes4_y*omega_y + axis_z_ucu_axes4_z*omega_z
+        )
+        ucu_qd_4_2 = (
+        ucu_omega_in_axes4_z - inv_ucu_end_p1_in_axes4_x*(ucu_qd_4_t +
+            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x - ucu_qd_4_t_2)
         )
         # (ucu-omega_1) angular velocity of link 1
         ucu_omega_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qd_1
-        ucu_omega_1_in_axes2_y = -ucu_c_2*ucu_qd_1
+        ucu_omega_1_in_axes2_y = -ucu_h_4_t_13*ucu_qd_1
         # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_in_axes4_x = ucu_c_4*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
-        ucu_omega_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_c_4*ucu_omega_1_in_axes2_y
+        ucu_omega_2_in_axes4_x = (
+        ucu_e_2_in_axes4_x*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
+        )
+        ucu_omega_2_in_axes4_y = (
+        ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y
+        )
         # (ucu-W_2) centripetal tensor of link 2
         ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
         ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
         ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y
+        ucu_W_2_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_W_2_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
         ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y
+        ucu_W_2_t_3 = ucu_W_2_t + ucu_W_2_t_2
         # (ucu-omega_4) angular velocity of link 4
-        ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4
+        ucu_omega_4_in_axes4_z_2 = ucu_omega_1_in_axes2_x + ucu_qd_4_2
         # (ucu-W_4) centripetal tensor of link 4
-        ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z
-        ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z
-        # (ucu-a_p) acceleration of the connection point without its centripetal part
-        ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_z - alpha_z*ucu_q_y
-        ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_x - alpha_x*ucu_q_z
-        ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_y - alpha_y*ucu_q_x
+        ucu_W_4_in_axes4_xz_2 = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z_2
+        ucu_W_4_in_axes4_yz_2 = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z_2
         # (ucu-S_ddot) acceleration of the connection point
-        ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2
-        ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3
-        ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t
+        ucu_S_ddot_x = t_ddot_x + B_p_xy*ucu_q_y + B_p_xz*ucu_q_z - W_p_t_4*ucu_q_x
+        ucu_S_ddot_y = t_ddot_y + B_p_yx*ucu_q_x + B_p_yz*ucu_q_z - W_p_t_5*ucu_q_y
+        ucu_S_ddot_z = t_ddot_z + B_p_zx*ucu_q_x + B_p_zy*ucu_q_y - W_p_t_6*ucu_q_z
         ucu_S_ddot_in_axes4_x = (
         axis_x_ucu_axes4_x*ucu_S_ddot_x + axis_x_ucu_axes4_y*ucu_S_ddot_y +
             axis_x_ucu_axes4_z*ucu_S_ddot_z
@@ -5653,70 +5752,80 @@ def _run_legs(m, X, V, A):
         axis_y_ucu_axes4_x*ucu_S_ddot_x + axis_y_ucu_axes4_y*ucu_S_ddot_y +
             axis_y_ucu_axes4_z*ucu_S_ddot_z
         )
+        ucu_S_ddot_in_axes4_z = (
+        axis_z_ucu_axes4_x*ucu_S_ddot_x + axis_z_ucu_axes4_y*ucu_S_ddot_y +
+            axis_z_ucu_axes4_z*ucu_S_ddot_z
+        )
         # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
         ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_y
         # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4
+        ucu_zeta_4_in_axes4_x_2 = ucu_omega_2_in_axes4_y*ucu_qd_4_2
         # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
-        ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t
+        ucu_beta_4_in_axes4_x_2 = ucu_zeta_4_in_axes4_x_2 - ucu_zeta_2_t
         # (ucu-bias) acceleration of the connection point at zero joint accelerations
         ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
         ucu_bias_in_axes4_x = (
-        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_c_4 +
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_h_4_t_12*(ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_x +
             ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
         )
         ucu_bias_in_axes4_y = (
-        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+        ucu_h_4_t_12*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
             ucu_bias_t*ucu_omega_2_in_axes4_x
         )
         # (ucu-rel) acceleration of the connection point left to the joint accelerations
         ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_bias_in_axes4_x
         ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_bias_in_axes4_y
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_c_4*ucu_root_4_t_5
+        ucu_end_p1_in_axes4_y = (
+        ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_e_2_in_axes4_x*ucu_h_4_t_18
+        )
         ucu_omega_in_axes4_y = (
         axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
+        )
+        ucu_nd_m1_t = (
+        ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y - ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z
         )
         ucu_nd_m1_in_axes4_x = (
         ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
             ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x
         )
-        ucu_nd_m1_in_axes4_z = (
-        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z
-            - ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y
-        )
+        ucu_nd_m1_in_axes4_z_2 = -ucu_nd_m1_t - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z_2
         # (ucu-nu_1) bias of the angular acceleration along moment direction 1
-        ucu_nu_1_t = (
-        ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x - ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x
+        ucu_nu_1_t = ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_nu_1_t_2 = -ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x
+        ucu_nu_1_t_4 = ucu_omega_2_in_axes4_y - ucu_omega_in_axes4_y
+        ucu_nu_1_t_5 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x)
+        ucu_nu_1_t_7 = ucu_nu_1_t_2 + ucu_beta_4_in_axes4_x_2*ucu_n_m1_in_axes4_x
+        ucu_nu_1_t_8 = (
+        ucu_nu_1_t_5 + ucu_nd_m1_in_axes4_z_2*(ucu_omega_4_in_axes4_z_2 - ucu_omega_in_axes4_z) +
+            ucu_nu_1_t_4*(ucu_nu_1_t + ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z_2)
         )
-        ucu_nu_1_t_2 = (
-        ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x) +
-            ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z - ucu_omega_in_axes4_z) +
-            (ucu_omega_2_in_axes4_y -
-            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
-            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
-        )
-        ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
+        ucu_nu_1_2 = -ucu_nu_1_t_7 - ucu_nu_1_t_8
         # (ucu-etad_1) acceleration with which the joints turn along moment direction 1
         ucu_etad_1_t = (
         ucu_n_m1_in_axes4_x*(alpha_x*axis_x_ucu_axes4_x + alpha_y*axis_x_ucu_axes4_y +
-            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_in_axes4_x*(alpha_x*ucu_w_3_x +
-            alpha_y*ucu_w_3_y + alpha_z*ucu_w_3_z)
+            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_in_axes4_x*(alpha_x*axis_z_ucu_axes4_x +
+            alpha_y*axis_z_ucu_axes4_y + alpha_z*axis_z_ucu_axes4_z)
         )
-        ucu_etad_1 = ucu_etad_1_t + ucu_nu_1
+        ucu_etad_1 = ucu_etad_1_t + ucu_nu_1_2
         # (ucu-qdd_1) acceleration of joint 1
         ucu_qdd_1 = (
-        inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_x +
+        inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y)
         )
         # (ucu-qdd_2) acceleration of joint 2
         ucu_qdd_2 = (
-        inv_ucu_root_2*(ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x + ucu_qdd_1*ucu_v_1_t_2 -
-            ucu_c_4*ucu_rel_in_axes4_y)
+        inv_ucu_h_4_t_12*(ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x + ucu_qdd_1*ucu_v_1_t_2 -
+            ucu_e_2_in_axes4_x*ucu_rel_in_axes4_y)
+        )
+        # (ucu-qdd_4) acceleration of joint 4
+        ucu_qdd_4_t = (
+        inv_ucu_end_p1_in_axes4_x*(ucu_etad_1 + ucu_qdd_1*ucu_w_4_t -
+            ucu_n_m1_in_axes2_z*ucu_qdd_2)
         )
         # (ucu-alpha_1) angular acceleration of link 1
         ucu_alpha_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qdd_1
-        ucu_alpha_1_in_axes2_y = -ucu_c_2*ucu_qdd_1
+        ucu_alpha_1_in_axes2_y = -ucu_h_4_t_13*ucu_qdd_1
         # (ucu-alpha_2) angular acceleration of link 2
         ucu_alpha_2_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_in_axes2_x
         ucu_alpha_2_in_axes2_y = ucu_alpha_1_in_axes2_y - ucu_W_2_in_axes2_xz
@@ -5727,141 +5836,145 @@ def _run_legs(m, X, V, A):
         ucu_B_2_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_in_axes2_x
         # (ucu-alpha_4) angular acceleration of link 4
         ucu_alpha_4_in_axes4_x = (
-        ucu_zeta_4_in_axes4_x + ucu_alpha_2_in_axes2_y*ucu_e_2_in_axes4_y + ucu_c_4*ucu_qdd_2
+        ucu_zeta_4_in_axes4_x_2 + ucu_alpha_2_in_axes2_y*ucu_e_2_in_axes4_y +
+            ucu_e_2_in_axes4_x*ucu_qdd_2
         )
         ucu_alpha_4_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_c_4 -
-            ucu_omega_2_in_axes4_x*ucu_qd_4
+        ucu_e_2_in_axes4_y*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_e_2_in_axes4_x -
+            ucu_omega_2_in_axes4_x*ucu_qd_4_2
         )
-        ucu_alpha_4_in_axes4_z = (
-        ucu_alpha_2_in_axes2_x - inv_ucu_end_p1_in_axes4_x*(ucu_etad_1 + ucu_qd_4_t_4*ucu_qdd_1 -
-            ucu_n_m1_in_axes2_z*ucu_qdd_2)
-        )
+        ucu_alpha_4_in_axes4_z = ucu_alpha_2_in_axes2_x - ucu_qdd_4_t
         # (ucu-B_4) acceleration tensor of link 4
         ucu_B_4_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_in_axes4_z
-        ucu_B_4_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_in_axes4_y
+        ucu_B_4_in_axes4_xz = ucu_W_4_in_axes4_xz_2 + ucu_alpha_4_in_axes4_y
         ucu_B_4_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_in_axes4_z
-        ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_in_axes4_x
-        ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_in_axes4_y
-        ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_in_axes4_x
+        ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz_2 - ucu_alpha_4_in_axes4_x
+        ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz_2 - ucu_alpha_4_in_axes4_y
+        ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz_2 + ucu_alpha_4_in_axes4_x
         # (ucu-acc_4) acceleration of the reference point of link 4, less gravity
-        ucu_acc_4_in_axes4_x = (
-        ucu_S_ddot_in_axes4_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
-            axis_x_ucu_axes4_z*gravity_z
+        ucu_g_in_axes4_x = (
+        axis_x_ucu_axes4_x*gravity_x + axis_x_ucu_axes4_y*gravity_y + axis_x_ucu_axes4_z*gravity_z
         )
-        ucu_acc_4_in_axes4_y = (
-        ucu_S_ddot_in_axes4_y - axis_y_ucu_axes4_x*gravity_x - axis_y_ucu_axes4_y*gravity_y -
-            axis_y_ucu_axes4_z*gravity_z
+        ucu_g_in_axes4_y = (
+        axis_y_ucu_axes4_x*gravity_x + axis_y_ucu_axes4_y*gravity_y + axis_y_ucu_axes4_z*gravity_z
         )
-        ucu_acc_4_in_axes4_z = (
-        ucu_S_ddot_x*ucu_w_3_x + ucu_S_ddot_y*ucu_w_3_y + ucu_S_ddot_z*ucu_w_3_z -
-            gravity_x*ucu_w_3_x - gravity_y*ucu_w_3_y - gravity_z*ucu_w_3_z
+        ucu_g_in_axes4_z = (
+        axis_z_ucu_axes4_x*gravity_x + axis_z_ucu_axes4_y*gravity_y + axis_z_ucu_axes4_z*gravity_z
+        )
+        ucu_acc_4_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_g_in_axes4_x
+        ucu_acc_4_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_g_in_axes4_y
+        ucu_acc_4_in_axes4_z = ucu_S_ddot_in_axes4_z - ucu_g_in_axes4_z
+        # (ucu-phi_4) inertia force of link 4 from its turning about its reference point
+        ucu_phi_4_t = ucu_W_2_t_3*ucu_h_4_in_spec4_x
+        ucu_phi_4_in_axes4_z = (
+        ucu_B_4_in_axes4_zx*ucu_h_4_in_spec4_y + ucu_B_4_in_axes4_zy*ucu_h_4_in_spec4_z -
+            ucu_phi_4_t
         )
         # (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points
-        ucu_mu_4_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
-        ucu_mu_4_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
-        ucu_mu_4_t_3 = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z
+        ucu_mu_4_t = ucu_J_4_in_spec4_yz*(ucu_W_2_t - ucu_W_2_t_2)
+        ucu_mu_4_t_2 = ucu_omega_4_in_axes4_z_2*ucu_omega_4_in_axes4_z_2
         ucu_mu_4_in_axes4_x = (
         ucu_B_4_in_axes4_yx*ucu_J_4_in_spec4_xy + ucu_B_4_in_axes4_zy*ucu_Sigma_4_in_axes4_yy +
-            ucu_J_4_in_spec4_xz*(ucu_mu_4_t_2 - ucu_mu_4_t_3) +
+            ucu_J_4_in_spec4_xz*(ucu_W_2_t_2 - ucu_mu_4_t_2) +
             ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_z - ucu_B_4_in_axes4_yz*ucu_Sigma_4_in_axes4_zz
             - ucu_B_4_in_axes4_zx*ucu_J_4_in_spec4_yz - ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_x
         )
         ucu_mu_4_in_axes4_y = (
         ucu_B_4_in_axes4_xz*ucu_Sigma_4_in_axes4_zz + ucu_B_4_in_axes4_zy*ucu_J_4_in_spec4_yz +
             ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_x - ucu_B_4_in_axes4_xy*ucu_J_4_in_spec4_xz -
-            ucu_B_4_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_mu_4_t -
-            ucu_mu_4_t_3) - ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_y
+            ucu_B_4_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_W_2_t -
+            ucu_mu_4_t_2) - ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_y
         )
         ucu_mu_4_in_axes4_z = (
-        ucu_B_4_in_axes4_xz*ucu_J_4_in_spec4_xz + ucu_B_4_in_axes4_yx*ucu_Sigma_4_in_axes4_xx +
-            ucu_J_4_in_spec4_yz*(ucu_mu_4_t - ucu_mu_4_t_2) +
-            ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_y - ucu_B_4_in_axes4_xy*ucu_Sigma_4_in_axes4_yy
-            - ucu_B_4_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_z
+        ucu_mu_4_t + ucu_B_4_in_axes4_xz*ucu_J_4_in_spec4_xz +
+            ucu_B_4_in_axes4_yx*ucu_Sigma_4_in_axes4_xx + ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_y
+            - ucu_B_4_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
+            ucu_B_4_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_z
         )
         # (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points
         ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
         ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
         ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2
-        ucu_mu_2_t_7 = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1
-        ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1
-        ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_t_7 + ucu_e_1_in_axes4_z*ucu_mu_2_t_3
-        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_c_2*ucu_mu_2_t_3
+        ucu_mu_2_t_7 = ucu_h_4_t_10*ucu_mu_2_t_2 + ucu_h_4_t_9*ucu_mu_2_t
+        ucu_g_in_axes2_z = ucu_h_4_t_9*ucu_mu_2_t_2 - ucu_h_4_t_10*ucu_mu_2_t
+        ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 + ucu_h_4_t_13*ucu_mu_2_t_7
+        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_h_4_t_13*ucu_mu_2_t_3
+        ucu_mu_2_t_8 = ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 - ucu_mu_2_t_6)
+        ucu_mu_2_t_9 = ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 - ucu_mu_2_t_6)
+        ucu_mu_2_t_10 = ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 - ucu_mu_2_t_5)
+        ucu_mu_2_t_11 = ucu_g_in_axes2_y*ucu_h_2_in_spec2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z
+        ucu_mu_2_t_12 = ucu_g_in_axes2_x*ucu_h_2_in_spec2_y - ucu_g_in_axes2_z*ucu_h_2_in_spec2_x
+        ucu_mu_2_t_13 = ucu_g_in_axes2_x*ucu_h_2_in_spec2_z + ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
         ucu_mu_2_in_axes2_x = (
-        ucu_B_2_in_axes2_yx*ucu_J_2_in_spec2_xy + ucu_B_2_in_axes2_zx*ucu_J_2_in_spec2_xz +
-            ucu_B_2_in_axes2_zy*ucu_Sigma_2_in_axes2_yy +
-            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y +
-            ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 -
-            ucu_mu_2_t_6)
+        ucu_mu_2_t_11 + ucu_B_2_in_axes2_yx*ucu_J_2_in_spec2_xy +
+            ucu_B_2_in_axes2_zx*ucu_J_2_in_spec2_xz + ucu_B_2_in_axes2_zy*ucu_Sigma_2_in_axes2_yy
+            + ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_x - ucu_mu_2_t_8
         )
         ucu_mu_2_in_axes2_y = (
-        ucu_B_2_in_axes2_xy*ucu_J_2_in_spec2_yz + ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_y +
-            ucu_g_in_axes2_z*ucu_h_2_in_spec2_x - ucu_B_2_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
-            ucu_B_2_in_axes2_zy*ucu_J_2_in_spec2_xz - ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 -
-            ucu_mu_2_t_6) - ucu_g_in_axes2_x*ucu_h_2_in_spec2_y
+        ucu_B_2_in_axes2_xy*ucu_J_2_in_spec2_yz + ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_y -
+            ucu_mu_2_t_12 - ucu_mu_2_t_9 - ucu_B_2_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
+            ucu_B_2_in_axes2_zy*ucu_J_2_in_spec2_xz
         )
         ucu_mu_2_in_axes2_z = (
         ucu_B_2_in_axes2_yx*ucu_Sigma_2_in_axes2_xx + ucu_J_2_in_spec2_xy*ucu_alpha_1_in_axes2_x -
-            ucu_B_2_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 -
-            ucu_mu_2_t_5) - ucu_J_2_in_spec2_yz*ucu_alpha_1_in_axes2_y -
-            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
+            ucu_mu_2_t_10 - ucu_mu_2_t_13 - ucu_B_2_in_axes2_xy*ucu_Sigma_2_in_axes2_yy -
+            ucu_J_2_in_spec2_yz*ucu_alpha_1_in_axes2_y
         )
         # (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         ucu_N_2_in_axes2_x = ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z
         ucu_N_2_in_axes2_y = (
-        ucu_mu_2_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x - ucu_c_4*ucu_mu_4_in_axes4_y
+        ucu_mu_2_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x -
+            ucu_e_2_in_axes4_x*ucu_mu_4_in_axes4_y
         )
         ucu_N_2_in_axes2_z = (
-        ucu_mu_2_in_axes2_z + ucu_c_4*ucu_mu_4_in_axes4_x + ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y
+        ucu_mu_2_in_axes2_z + ucu_e_2_in_axes4_x*ucu_mu_4_in_axes4_x +
+            ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y
         )
         # (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         ucu_G_m1_t = inv_ucu_end_p1_in_axes4_x*ucu_mu_4_in_axes4_z
         # (ucu-c) leg force on the platform without actuation and without the mass at the connection point
-        ucu_c_t = inv_ucu_root_2*(ucu_N_2_in_axes2_z + ucu_G_m1_t*ucu_n_m1_in_axes2_z)
+        ucu_c_t = inv_ucu_h_4_t_12*(ucu_N_2_in_axes2_z + ucu_G_m1_t*ucu_n_m1_in_axes2_z)
         ucu_c_t_2 = (
-        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*ucu_qd_4_t_4 + ucu_N_2_in_axes2_y*ucu_c_2 -
+        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*ucu_w_4_t + ucu_N_2_in_axes2_y*ucu_h_4_t_13 -
             ucu_N_2_in_axes2_x*ucu_e_1_in_axes4_z - ucu_c_t*ucu_v_1_t_2)
         )
         ucu_c_in_axes4_x = (
-        ucu_c_4*ucu_c_t_2 + ucu_h_4_in_spec4_y*(ucu_mu_4_t_2 + ucu_mu_4_t_3) -
+        ucu_c_t_2*ucu_e_2_in_axes4_x + ucu_h_4_in_spec4_y*(ucu_W_2_t_2 + ucu_mu_4_t_2) -
             ucu_B_4_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_in_axes4_xz*ucu_h_4_in_spec4_x -
             ucu_c_t*ucu_e_2_in_axes4_y
         )
         ucu_c_in_axes4_y = (
-        ucu_c_4*ucu_c_t + ucu_c_t_2*ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_mu_4_t +
-            ucu_mu_4_t_3) - ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y -
+        ucu_c_t*ucu_e_2_in_axes4_x + ucu_c_t_2*ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_W_2_t
+            + ucu_mu_4_t_2) - ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y -
             ucu_B_4_in_axes4_yz*ucu_h_4_in_spec4_x
         )
         # (ucu-c_m) moment of the leg on the platform without actuation
         ucu_c_m_in_axes4_x = ucu_G_m1_t*ucu_n_m1_in_axes4_x
-        ucu_c_m_x = axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x - ucu_mu_4_in_axes4_z*ucu_w_3_x
-        ucu_c_m_y = axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x - ucu_mu_4_in_axes4_z*ucu_w_3_y
-        ucu_c_m_z = axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x - ucu_mu_4_in_axes4_z*ucu_w_3_z
+        ucu_c_m_x = axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x - axis_z_ucu_axes4_x*ucu_mu_4_in_axes4_z
+        ucu_c_m_y = axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x - axis_z_ucu_axes4_y*ucu_mu_4_in_axes4_z
+        ucu_c_m_z = axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x - axis_z_ucu_axes4_z*ucu_mu_4_in_axes4_z
         # (ucu-c_true) leg force on the platform without actuation, the last link's mass included
         ucu_c_true_in_axes4_x = ucu_c_in_axes4_x - ucu_acc_4_in_axes4_x*ucu_link4_mass
         ucu_c_true_in_axes4_y = ucu_c_in_axes4_y - ucu_acc_4_in_axes4_y*ucu_link4_mass
-        ucu_c_true_in_axes4_z = (
-        ucu_h_4_in_spec4_x*(ucu_mu_4_t + ucu_mu_4_t_2) - ucu_B_4_in_axes4_zx*ucu_h_4_in_spec4_y -
-            ucu_B_4_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_acc_4_in_axes4_z*ucu_link4_mass
-        )
+        ucu_c_true_in_axes4_z = -ucu_phi_4_in_axes4_z - ucu_acc_4_in_axes4_z*ucu_link4_mass
         ucu_c_true_x = (
         axis_x_ucu_axes4_x*ucu_c_true_in_axes4_x + axis_y_ucu_axes4_x*ucu_c_true_in_axes4_y +
-            ucu_c_true_in_axes4_z*ucu_w_3_x
+            axis_z_ucu_axes4_x*ucu_c_true_in_axes4_z
         )
         ucu_c_true_y = (
         axis_x_ucu_axes4_y*ucu_c_true_in_axes4_x + axis_y_ucu_axes4_y*ucu_c_true_in_axes4_y +
-            ucu_c_true_in_axes4_z*ucu_w_3_y
+            axis_z_ucu_axes4_y*ucu_c_true_in_axes4_z
         )
         ucu_c_true_z = (
         axis_x_ucu_axes4_z*ucu_c_true_in_axes4_x + axis_y_ucu_axes4_z*ucu_c_true_in_axes4_y +
-            ucu_c_true_in_axes4_z*ucu_w_3_z
+            axis_z_ucu_axes4_z*ucu_c_true_in_axes4_z
         )
         ok = (
-        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
-            _TOLERANCE * 0.8)
+        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
+            > _TOLERANCE * 0.8)
         )
         # (ucu-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_ucu[0][leg]] = ucu_c_true_x
@@ -5872,9 +5985,9 @@ def _run_legs(m, X, V, A):
         out_leg_force[_leg_force_ucu[4][leg]] = ucu_c_m_y
         out_leg_force[_leg_force_ucu[5][leg]] = ucu_c_m_z
         # (ucu-w_3) force part of reciprocal wrench 3
-        out_actuator[_actuator_ucu[0][leg]] = ucu_w_3_x
-        out_actuator[_actuator_ucu[1][leg]] = ucu_w_3_y
-        out_actuator[_actuator_ucu[2][leg]] = ucu_w_3_z
+        out_actuator[_actuator_ucu[0][leg]] = axis_z_ucu_axes4_x
+        out_actuator[_actuator_ucu[1][leg]] = axis_z_ucu_axes4_y
+        out_actuator[_actuator_ucu[2][leg]] = axis_z_ucu_axes4_z
     return ok, (out_leg_force, out_actuator,)
 
 
@@ -5923,12 +6036,14 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
+    gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
+        m_star*t_z)
     )
     potential_ucu, = [0.0] * 1
     for leg, k in legs[0]:
@@ -5943,99 +6058,99 @@ def _run_potential(m, X):
             ucu_platform_joint_axis_platform_z, ucu_platform_point_x, ucu_platform_point_y,
             ucu_platform_point_z, ucu_potential_t, ucu_potential_t_2, ucu_potential_t_3,
         ) = k
-        # (ucu-S) from the base point to the connection point
-        ucu_S_x = (
-        t_x + R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z -
-            ucu_base_point_x
+        # (ucu-h_4) first moment of link 4 about the connection point
+        ucu_q_x = (
+        R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        ucu_S_y = (
-        t_y + R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z -
-            ucu_base_point_y
+        ucu_q_y = (
+        R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        ucu_S_z = (
-        t_z + R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z -
-            ucu_base_point_z
+        ucu_q_z = (
+        R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_in_turn1_x = (
-        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
+        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
+        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
+        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
+        ucu_h_4_t_4 = (
+        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+            ucu_base_frame_zx*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_y = (
-        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
+        ucu_h_4_t_5 = (
+        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+            ucu_base_frame_zy*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_z = (
-        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
+        ucu_h_4_t_6 = (
+        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+            ucu_base_frame_zz*ucu_h_4_t_3
         )
-        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
-        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
-        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
-        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
-        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
-        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
-        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
-        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
-        ucu_root_4_t = (
+        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
+        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
+        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
+        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
+        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
+        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
+        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
+        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
+        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
+        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
+        ucu_h_4_t_14 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_root_4_t_2 = (
+        ucu_h_4_t_15 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_root_4_t_3 = (
+        ucu_h_4_t_16 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
-        ucu_root_4_t_4 = (
-        ucu_e_1_in_axes4_z*(ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1) -
-            ucu_c_2*ucu_root_4_t_3
+        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
+        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
+        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
+        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
+        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
+        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
+        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
+        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
+        ucu_h_4_in_axes1_y = (
+        ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y + ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z
         )
-        ucu_root_4_t_5 = (
-        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_4*ucu_root_4_t_4
+        ucu_h_4_in_spec2_z = (
+        ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_z - ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y
         )
-        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_5)
-        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
-        inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        # (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ucu_mu_2_t_7 = ucu_h_4_t_10*ucu_mu_2_t_2 + ucu_h_4_t_9*ucu_mu_2_t
+        ucu_g_in_axes2_z = ucu_h_4_t_9*ucu_mu_2_t_2 - ucu_h_4_t_10*ucu_mu_2_t
+        ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 + ucu_h_4_t_13*ucu_mu_2_t_7
+        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_h_4_t_13*ucu_mu_2_t_3
         # (potential) potential energy
-        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_4
-        ucu_potential_t_4 = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1
-        ucu_potential_t_5 = ucu_c_1*ucu_potential_t + ucu_potential_t_2*ucu_s_1
-        ucu_potential_t_6 = (
-        (ucu_e_1_in_axes4_z*ucu_potential_t_4 - ucu_c_2*ucu_mu_2_t_3)*(ucu_h_2_in_spec2_z +
-            ucu_c_4*ucu_h_4_in_spec4_z - ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y -
-            ucu_link2_mass*(ucu_e_1_in_axes4_z*ucu_potential_t_5 - ucu_c_2*ucu_potential_t_3)) -
-            (ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1)*(ucu_h_2_in_spec2_y +
-            ucu_c_4*ucu_h_4_in_spec4_y + ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z +
-            ucu_link2_mass*(ucu_c_1*ucu_potential_t_2 - ucu_potential_t*ucu_s_1)) -
-            (ucu_c_2*ucu_potential_t_4 + ucu_e_1_in_axes4_z*ucu_mu_2_t_3)*(ucu_h_2_in_spec2_x +
-            ucu_h_4_in_spec4_x + ucu_link2_mass*(ucu_c_2*ucu_potential_t_5 +
-            ucu_e_1_in_axes4_z*ucu_potential_t_3))
+        ucu_potential_t_4 = ucu_h_4_t_10*ucu_potential_t_2 + ucu_h_4_t_9*ucu_potential_t
+        ucu_potential_t_5 = (
+        ucu_g_in_axes2_y*(ucu_h_2_in_spec2_z + ucu_h_4_in_spec2_z -
+            ucu_link2_mass*(ucu_e_1_in_axes4_z*ucu_potential_t_4 -
+            ucu_h_4_t_13*ucu_potential_t_3)) - ucu_g_in_axes2_x*(ucu_h_2_in_spec2_x +
+            ucu_h_4_in_spec4_x + ucu_link2_mass*(ucu_e_1_in_axes4_z*ucu_potential_t_3 +
+            ucu_h_4_t_13*ucu_potential_t_4)) - ucu_g_in_axes2_z*(ucu_h_2_in_spec2_y +
+            ucu_h_4_in_axes1_y + ucu_link2_mass*(ucu_h_4_t_9*ucu_potential_t_2 -
+            ucu_h_4_t_10*ucu_potential_t))
         )
         ok = (
-        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_4_t_5) > _TOLERANCE * _TOLERANCE * 1.0)
+        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0)
         )
         # (potential) potential energy
-        potential_ucu += ucu_potential_t_6
+        potential_ucu += ucu_potential_t_5
     # (potential) potential energy
     potential = potential_ucu - potential_t
     # (potential) potential energy
@@ -6103,7 +6218,7 @@ def _run_condition(m, X):
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-S) from the base point to the connection point
+        # (ucu-h_4) first moment of link 4 about the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -6113,84 +6228,81 @@ def _run_condition(m, X):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
-        ucu_S_in_turn1_x = (
-        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
+        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
+        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
+        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
+        ucu_h_4_t_4 = (
+        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+            ucu_base_frame_zx*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_y = (
-        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
+        ucu_h_4_t_5 = (
+        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+            ucu_base_frame_zy*ucu_h_4_t_3
         )
-        ucu_S_in_turn1_z = (
-        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
+        ucu_h_4_t_6 = (
+        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+            ucu_base_frame_zz*ucu_h_4_t_3
         )
-        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
-        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
-        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
-        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
-        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
-        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
-        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
-        ucu_root_4_t = (
+        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
+        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
+        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
+        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
+        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
+        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
+        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
+        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
+        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
+        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
+        ucu_h_4_t_14 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_root_4_t_2 = (
+        ucu_h_4_t_15 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_root_4_t_3 = (
+        ucu_h_4_t_16 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
-        ucu_root_4_t_4 = (
-        inv_ucu_root_2*ucu_S_in_turn1_z*(ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1) -
-            ucu_c_2*ucu_root_4_t_3
-        )
-        ucu_root_4_t_5 = (
-        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_4*ucu_root_4_t_4
-        )
-        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_5)
-        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
-        inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
+        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
+        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
+        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
+        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
+        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
+        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
+        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_4
+        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
+        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
+        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
         ucu_v_1_in_axes2_z = (
-        ucu_c_2*ucu_c_4*ucu_c_4*ucu_root_2 +
-            ucu_c_2*ucu_e_2_in_axes4_y*ucu_e_2_in_axes4_y*ucu_root_2
+        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
         )
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_4
-        # (ucu-w_3) force part of reciprocal wrench 3
-        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
-        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
-        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
+        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
+        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
+        ucu_end_p1_in_axes4_x = (
+        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
+        )
         # (ucu-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        ucu_pivot_size = abs(ucu_root_1_t)
-        ucu_pivot_size_2 = abs(ucu_root_2_t)
-        ucu_pivot_size_3 = abs(ucu_root_4_t_5)
+        ucu_pivot_size = abs(ucu_h_4_t_7)
+        ucu_pivot_size_2 = abs(ucu_h_4_t_11)
+        ucu_pivot_size_3 = abs(ucu_h_4_t_19)
         ucu_pivot_size_4 = abs(ucu_end_p1_in_axes4_x)
-        ucu_pivot_size_5 = abs(ucu_root_2)
+        ucu_pivot_size_5 = abs(ucu_h_4_t_12)
         ucu_pivot_size_6 = abs(ucu_v_1_in_axes2_z)
         ucu_least_pivots = (
         least(least(least(least(least(1.25*sqrt(ucu_pivot_size), 1.25*sqrt(ucu_pivot_size_2)),
@@ -6198,9 +6310,9 @@ def _run_condition(m, X):
             1.25*ucu_pivot_size_6)
         )
         # (ucu-H_a_3) moment of the column's unit force about the platform origin
-        ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y
-        ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z
-        ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x
+        ucu_H_a_3_x = axis_z_ucu_axes4_z*ucu_q_y - axis_z_ucu_axes4_y*ucu_q_z
+        ucu_H_a_3_y = axis_z_ucu_axes4_x*ucu_q_z - axis_z_ucu_axes4_z*ucu_q_x
+        ucu_H_a_3_z = axis_z_ucu_axes4_y*ucu_q_x - axis_z_ucu_axes4_x*ucu_q_y
         # (spread) rms distance of the platform points from their centroid
         ucu_spread_t = b_c_in_platform_x - ucu_platform_point_x
         ucu_spread_t_2 = b_c_in_platform_y - ucu_platform_point_y
@@ -6209,18 +6321,18 @@ def _run_condition(m, X):
         ucu_spread_t*ucu_spread_t + ucu_spread_t_2*ucu_spread_t_2 + ucu_spread_t_3*ucu_spread_t_3
         )
         clear = (
-        clear & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_root_4_t_5) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
-            _TOLERANCE * 0.8)
+        clear & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
+            > _TOLERANCE * 0.8)
         )
         # (spread) rms distance of the platform points from their centroid
         spread_ucu += ucu_spread_t_4
         # (ucu-w_3) force part of reciprocal wrench 3
-        out_H[_H_ucu[0][leg]] = ucu_w_3_x
-        out_H[_H_ucu[1][leg]] = ucu_w_3_y
-        out_H[_H_ucu[2][leg]] = ucu_w_3_z
+        out_H[_H_ucu[0][leg]] = axis_z_ucu_axes4_x
+        out_H[_H_ucu[1][leg]] = axis_z_ucu_axes4_y
+        out_H[_H_ucu[2][leg]] = axis_z_ucu_axes4_z
         # (ucu-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ucu[3][leg]] = ucu_H_a_3_x
         out_H[_H_ucu[4][leg]] = ucu_H_a_3_y
@@ -6479,11 +6591,11 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_2 = q[[2, 6, 10, 14, 18, 22]]
-    gap = q_actuated - q_of_inverse_kinematics_from_2
-    return (gap,)
+    residual = q_actuated - q_of_inverse_kinematics_from_2
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -6492,7 +6604,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

@@ -144,9 +144,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -208,6 +208,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -256,7 +280,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -266,7 +290,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -279,7 +303,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -296,16 +320,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -313,7 +337,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1459,10 +1492,28 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
-        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
-        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+    real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
+        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
+
+INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
+{
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real W_p_t = omega_x*omega_x;
+    const real omega_y = V[4*w + k];
+    const real W_p_t_2 = omega_y*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_t_3 = omega_z*omega_z;
+    v->W_p_t_4 = W_p_t_2 + W_p_t_3;
+    v->W_p_xy = omega_x*omega_y;
+    v->W_p_xz = omega_x*omega_z;
+    v->W_p_t_5 = W_p_t + W_p_t_3;
+    v->W_p_yz = omega_y*omega_z;
+    v->W_p_t_6 = W_p_t + W_p_t_2;
+}
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
@@ -1472,10 +1523,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_5 = X[5*w + k];
     const real X_6 = X[6*w + k];
     const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-    const real quaternion_scale = 2/quaternion_norm2;
-    const real quaternion_sx = X_3*quaternion_scale;
-    const real quaternion_sy = X_4*quaternion_scale;
-    const real quaternion_sz = X_5*quaternion_scale;
+    v->quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*v->quaternion_scale;
+    const real quaternion_sy = X_4*v->quaternion_scale;
+    const real quaternion_sz = X_5*v->quaternion_scale;
     const real quaternion_wx = X_6*quaternion_sx;
     const real quaternion_wy = X_6*quaternion_sy;
     const real quaternion_wz = X_6*quaternion_sz;
@@ -1485,53 +1536,22 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real quaternion_yy = X_4*quaternion_sy;
     const real quaternion_yz = X_4*quaternion_sz;
     const real quaternion_zz = X_5*quaternion_sz;
-    const real R_xx = 1 - quaternion_yy - quaternion_zz;
-    const real R_xy = quaternion_xy - quaternion_wz;
-    const real R_xz = quaternion_wy + quaternion_xz;
-    const real R_yx = quaternion_wz + quaternion_xy;
-    const real R_yy = 1 - quaternion_xx - quaternion_zz;
-    const real R_yz = quaternion_yz - quaternion_wx;
-    const real R_zx = quaternion_xz - quaternion_wy;
-    const real R_zy = quaternion_wx + quaternion_yz;
-    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    v->R_xx = 1 - quaternion_yy - quaternion_zz;
+    v->R_xy = quaternion_xy - quaternion_wz;
+    v->R_xz = quaternion_wy + quaternion_xz;
+    v->R_yx = quaternion_wz + quaternion_xy;
+    v->R_yy = 1 - quaternion_xx - quaternion_zz;
+    v->R_yz = quaternion_yz - quaternion_wx;
+    v->R_zx = quaternion_xz - quaternion_wy;
+    v->R_zy = quaternion_wx + quaternion_yz;
+    v->R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
-        R_xx*m->h_star_in_platform_x;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
-        R_yy*m->h_star_in_platform_y;
-    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
-        R_zz*m->h_star_in_platform_z;
-    v->quaternion_scale = quaternion_scale;
-    v->R_xx = R_xx;
-    v->R_xy = R_xy;
-    v->R_xz = R_xz;
-    v->R_yx = R_yx;
-    v->R_yy = R_yy;
-    v->R_yz = R_yz;
-    v->R_zx = R_zx;
-    v->R_zy = R_zy;
-    v->R_zz = R_zz;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
-    v->h_star_z = h_star_z;
-}
-
-INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
-{
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
-    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
-    v->omega_in_platform_x = omega_in_platform_x;
-    v->omega_in_platform_y = omega_in_platform_y;
-    v->omega_in_platform_z = omega_in_platform_z;
-}
-
-INLINE void stage_M_dynamics(const prepared *m, values *v)
-{
+    v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
+        v->R_xx*m->h_star_in_platform_x;
+    v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
+        v->R_yy*m->h_star_in_platform_y;
+    v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
+        v->R_zz*m->h_star_in_platform_z;
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
@@ -1543,23 +1563,31 @@ INLINE void stage_M_dynamics(const prepared *m, values *v)
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
-    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+    v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
-    v->J_star_xx = J_star_xx;
-    v->J_star_xy = J_star_xy;
-    v->J_star_xz = J_star_xz;
-    v->J_star_yy = J_star_yy;
-    v->J_star_yz = J_star_yz;
-    v->J_star_zz = J_star_zz;
+    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
+}
+
+INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
+{
+    /* (B_p) acceleration tensor of the platform */
+    const real alpha_z = A[5*w + k];
+    v->B_p_xy = v->W_p_xy - alpha_z;
+    const real alpha_y = A[4*w + k];
+    v->B_p_xz = alpha_y + v->W_p_xz;
+    v->B_p_yx = alpha_z + v->W_p_xy;
+    const real alpha_x = A[3*w + k];
+    v->B_p_yz = v->W_p_yz - alpha_x;
+    v->B_p_zx = v->W_p_xz - alpha_y;
+    v->B_p_zy = alpha_x + v->W_p_yz;
 }
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
@@ -1571,70 +1599,42 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
+    v->Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    v->Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    v->Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
-        v->R_xx*m->gravity_x;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
-        v->R_yy*m->gravity_y;
-    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
-        v->R_zz*m->gravity_z;
-    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
-        Z_q_t_2*v->omega_in_platform_z;
-    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
-        Z_q_t_3*v->omega_in_platform_x;
-    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
-        Z_q_t*v->omega_in_platform_y;
-    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
-        v->R_xz*Z_q_in_platform_z;
-    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
-        v->R_yz*Z_q_in_platform_z;
-    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
-        v->R_zz*Z_q_in_platform_z;
-    v->Z_p_x = Z_p_x;
-    v->Z_p_y = Z_p_y;
-    v->Z_p_z = Z_p_z;
-    v->Z_q_x = Z_q_x;
-    v->Z_q_y = Z_q_y;
-    v->Z_q_z = Z_q_z;
+    const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
+    const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
+    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
+        Z_q_t_2*omega_z;
+    v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
+        Z_q_t_3*omega_x;
+    v->Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x + Z_q_t_2*omega_x -
+        Z_q_t*omega_y;
 }
 
 typedef struct {
-    real uhs_q_x, uhs_q_y, uhs_q_z, uhs_S_x, uhs_S_y, uhs_S_z, uhs_rho2_1, uhs_c_1, uhs_s_1,
-        uhs_rho2_2, uhs_root_2, uhs_c_2, uhs_x_3_in_axes2_x, uhs_c_3, uhs_s_3, uhs_e_1_in_axes3_y,
-        uhs_v_1_t, uhs_v_1_in_axes2_z, uhs_v_1_t_2, inv_uhs_v_1_in_axes2_z, uhs_e_1_in_axes3_z,
-        inv_uhs_root_2, axis_z_uhs_axes3_x, axis_z_uhs_axes3_y, axis_z_uhs_axes3_z, uhs_g_in_axes2_z,
-        uhs_a_p_x, uhs_a_p_y, uhs_a_p_z, uhs_S_dot_t, uhs_S_dot_t_2, uhs_S_dot_t_3, uhs_qd_1_t,
-        uhs_qd_1_t_2, uhs_qd_2_t, uhs_qd_2, uhs_qd_3, uhs_omega_1_in_axes2_x, uhs_omega_1_in_axes2_y,
-        uhs_omega_2_in_axes3_x, uhs_omega_2_in_axes3_y, uhs_W_2_in_axes2_yz, uhs_W_2_in_axes2_xz,
-        uhs_W_2_in_axes2_xy, uhs_W_2_t, uhs_W_2_t_2, uhs_W_2_in_axes3_xy, uhs_W_2_t_3,
-        uhs_omega_3_in_axes3_z, uhs_W_3_in_axes3_xz, uhs_W_3_in_axes3_yz, uhs_zeta_2_in_axes3_x,
-        uhs_zeta_2_in_axes3_y, uhs_zeta_3_in_axes3_x, uhs_zeta_3_in_axes3_y, uhs_bias_t_2,
-        uhs_bias_in_axes3_x, uhs_bias_in_axes3_y, uhs_bias_in_axes3_z, uhs_S_ddot_x, uhs_S_ddot_y,
-        uhs_S_ddot_z, uhs_w_3_x, uhs_w_3_y, uhs_w_3_z, uhs_H_a_3_x, uhs_H_a_3_y, uhs_H_a_3_z,
-        uhs_h_3_t_7, uhs_h_3_t_8, uhs_h_3_t_9, uhs_h_3_t_10, uhs_e_2_in_axes3_x, uhs_h_3_t_12,
-        uhs_e_1_in_axes3_x, uhs_w_1_in_axes3_y, inv_uhs_h_3_t_9, uhs_w_2_in_axes3_y,
-        uhs_d_alpha_3_in_axes3_zy, uhs_d_Gamma_2_in_axes3_y, uhs_d_Gamma_1_in_axes3_y,
-        uhs_d_c_in_axes3_xx, uhs_d_c_in_axes3_xy, uhs_d_c_in_axes3_xz, uhs_d_c_in_axes3_yz,
-        uhs_S_in_turn1_x, uhs_S_in_turn1_y, uhs_S_in_turn1_z, uhs_root_1, inv_uhs_rho2_1,
-        inv_uhs_rho2_2, uhs_q_3_t, axis_y_uhs_axes3_x, axis_y_uhs_axes3_y, axis_y_uhs_axes3_z,
-        axis_x_uhs_axes3_x, axis_x_uhs_axes3_y, axis_x_uhs_axes3_z, uhs_acc_3_in_axes3_x,
-        uhs_acc_3_in_axes3_y, uhs_acc_3_in_axes3_z, uhs_c_in_axes3_x, uhs_c_in_axes3_y,
-        uhs_c_in_axes3_z;
+    real uhs_q_x, uhs_q_y, uhs_q_z, uhs_h_3_t_7, uhs_h_3_t_8, uhs_h_3_t_9, uhs_h_3_t_10, uhs_h_3_t_11,
+        uhs_e_2_in_axes3_x, uhs_h_3_t_12, uhs_h_3_in_spec2_z, uhs_c_1, uhs_s_1, uhs_c_2,
+        uhs_e_1_in_axes3_z, uhs_e_1_in_axes3_x, uhs_e_1_in_axes3_y, uhs_v_1_in_axes2_z, uhs_v_1_t_2,
+        inv_uhs_v_1_in_axes2_z, inv_uhs_h_3_t_9, axis_z_uhs_axes3_x, axis_z_uhs_axes3_y,
+        axis_z_uhs_axes3_z, uhs_w_3_x, uhs_w_3_y, uhs_w_3_z, axis_y_uhs_axes3_x, axis_y_uhs_axes3_y,
+        axis_y_uhs_axes3_z, axis_x_uhs_axes3_x, axis_x_uhs_axes3_y, axis_x_uhs_axes3_z,
+        uhs_g_in_axes3_x, uhs_g_in_axes3_y, uhs_g_in_axes3_z, uhs_g_in_axes2_z, uhs_g_in_axes2_x,
+        uhs_g_in_axes2_y, uhs_mu_2_t_11, uhs_mu_2_t_12, uhs_mu_2_t_13, uhs_H_a_3_x, uhs_H_a_3_y,
+        uhs_H_a_3_z, uhs_S_dot_t, uhs_S_dot_t_2, uhs_S_dot_t_3, uhs_qd_1, uhs_qd_2, uhs_qd_3,
+        uhs_W_2_in_axes2_yz, uhs_W_2_in_axes2_xz, uhs_W_2_in_axes2_xy, uhs_W_2_in_axes3_xy,
+        uhs_W_3_in_axes3_xz, uhs_W_3_in_axes3_yz, uhs_zeta_3_in_axes3_x, uhs_zeta_3_in_axes3_y,
+        uhs_bias_in_axes3_x, uhs_bias_in_axes3_y, uhs_bias_in_axes3_z, uhs_mu_3_t_2, uhs_mu_3_t_3,
+        uhs_mu_3_t_4, uhs_mu_2_t_8, uhs_mu_2_t_9, uhs_mu_2_t_10, uhs_c_t, uhs_c_t_2, uhs_c_t_3,
+        uhs_S_ddot_in_axes3_x, uhs_S_ddot_in_axes3_y, uhs_S_ddot_in_axes3_z, uhs_qdd_1, uhs_qdd_2,
+        uhs_qdd_3, uhs_Q_xx, uhs_Q_xy, uhs_Q_xz, uhs_Q_yy, uhs_Q_yz, uhs_Q_zz, uhs_M_ta_t_3,
+        uhs_M_ta_t_4, uhs_M_ta_t_5, uhs_M_ta_t_6, uhs_M_ta_t_8, uhs_M_ta_t_9, uhs_M_ta_t_10,
+        uhs_M_ta_t_11, uhs_M_ta_t_12, uhs_M_aa_t, uhs_M_aa_t_2, uhs_M_aa_t_3, uhs_M_aa_t_4,
+        uhs_M_aa_t_5, uhs_M_aa_t_6, uhs_U_x, uhs_U_y, uhs_U_z, uhs_Z_a_t, uhs_Z_a_t_2, uhs_Z_a_t_3,
+        uhs_acc_3_in_axes3_x, uhs_acc_3_in_axes3_y, uhs_acc_3_in_axes3_z, uhs_c_in_axes3_x,
+        uhs_c_in_axes3_y, uhs_c_in_axes3_z;
 } values_uhs;
 
 INLINE void stage_uhs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1644,267 +1644,18 @@ INLINE void stage_uhs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real uhs_q_x = R_xy*m->uhs_platform_point_y[i] + R_xz*m->uhs_platform_point_z[i] +
+    v->uhs_q_x = R_xy*m->uhs_platform_point_y[i] + R_xz*m->uhs_platform_point_z[i] +
         R_xx*m->uhs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real uhs_q_y = R_yx*m->uhs_platform_point_x[i] + R_yz*m->uhs_platform_point_z[i] +
+    v->uhs_q_y = R_yx*m->uhs_platform_point_x[i] + R_yz*m->uhs_platform_point_z[i] +
         R_yy*m->uhs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real uhs_q_z = R_zx*m->uhs_platform_point_x[i] + R_zy*m->uhs_platform_point_y[i] +
+    v->uhs_q_z = R_zx*m->uhs_platform_point_x[i] + R_zy*m->uhs_platform_point_y[i] +
         R_zz*m->uhs_platform_point_z[i];
-    /* (uhs-S) from the base point to the connection point */
-    const real t_x = X[0*w + j];
-    const real uhs_S_x = t_x - m->uhs_base_point_x[i] + uhs_q_x;
-    const real t_y = X[1*w + j];
-    const real uhs_S_y = t_y - m->uhs_base_point_y[i] + uhs_q_y;
-    const real t_z = X[2*w + j];
-    const real uhs_S_z = t_z - m->uhs_base_point_z[i] + uhs_q_z;
-    const real uhs_S_in_turn1_x = uhs_S_x*m->uhs_base_frame_xx[i] +
-        uhs_S_y*m->uhs_base_frame_yx[i] + uhs_S_z*m->uhs_base_frame_zx[i];
-    const real uhs_S_in_turn1_y = uhs_S_x*m->uhs_base_frame_xy[i] +
-        uhs_S_y*m->uhs_base_frame_yy[i] + uhs_S_z*m->uhs_base_frame_zy[i];
-    const real uhs_S_in_turn1_z = uhs_S_x*m->uhs_base_frame_xz[i] +
-        uhs_S_y*m->uhs_base_frame_yz[i] + uhs_S_z*m->uhs_base_frame_zz[i];
-    /* (uhs-rho2_1) squared amplitude */
-    const real uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x +
-        uhs_S_in_turn1_y*uhs_S_in_turn1_y;
-    /* (uhs-root_1) root, with the sign of the branch */
-    const real uhs_root_1 = m->uhs_branch_1[i]*root(uhs_rho2_1);
-    /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
-    const real uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1;
-    /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
-    const real uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1;
-    /* (uhs-rho2_2) squared amplitude */
-    const real uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1;
-    /* (uhs-root_2) root, with the sign of the branch */
-    const real uhs_root_2 = m->uhs_branch_2[i]*root(uhs_rho2_2);
-    /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
-    const real uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
-    /* (uhs-x_3) from the origin of joint 3 to the connection point */
-    const real uhs_x_3_in_axes2_x = uhs_root_2 - m->uhs_joint3_offset_x[i];
-    /* (uhs-q_3) displacement of joint 3 */
-    const real uhs_q_3_t = m->inv_uhs_joint3_pitch[i]*(m->uhs_platform_joint_offset_x[i] -
-        uhs_x_3_in_axes2_x);
-    /* (uhs-c_3) cosine of the angle of joint 3 from its reference direction */
-    const real uhs_c_3 = cosine(uhs_q_3_t);
-    /* (uhs-s_3) sine of the angle of joint 3 from its reference direction */
-    const real uhs_s_3 = -sine(uhs_q_3_t);
-    /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-    const real uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3;
-    const real uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2;
-    const real uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3;
-    const real uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t;
-    const real uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t;
-    /* (uhs-qd_1) rate of joint 1 */
-    const real inv_uhs_v_1_in_axes2_z = 1/uhs_v_1_in_axes2_z;
-    /* (uhs-qd_2) rate of joint 2 */
-    const real uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2;
-    const real inv_uhs_root_2 = 1/uhs_root_2;
-    /* (uhs-u_1) centripetal acceleration of the connection point */
-    const real axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x;
-    const real axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y;
-    const real axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z;
-    /* (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real uhs_g_in_axes2_z = uhs_c_1*m->uhs_mu_2_t_2[i] - m->uhs_mu_2_t[i]*uhs_s_1;
-    v->uhs_q_x = uhs_q_x;
-    v->uhs_q_y = uhs_q_y;
-    v->uhs_q_z = uhs_q_z;
-    v->uhs_S_x = uhs_S_x;
-    v->uhs_S_y = uhs_S_y;
-    v->uhs_S_z = uhs_S_z;
-    v->uhs_rho2_1 = uhs_rho2_1;
-    v->uhs_c_1 = uhs_c_1;
-    v->uhs_s_1 = uhs_s_1;
-    v->uhs_rho2_2 = uhs_rho2_2;
-    v->uhs_root_2 = uhs_root_2;
-    v->uhs_c_2 = uhs_c_2;
-    v->uhs_x_3_in_axes2_x = uhs_x_3_in_axes2_x;
-    v->uhs_c_3 = uhs_c_3;
-    v->uhs_s_3 = uhs_s_3;
-    v->uhs_e_1_in_axes3_y = uhs_e_1_in_axes3_y;
-    v->uhs_v_1_t = uhs_v_1_t;
-    v->uhs_v_1_in_axes2_z = uhs_v_1_in_axes2_z;
-    v->uhs_v_1_t_2 = uhs_v_1_t_2;
-    v->inv_uhs_v_1_in_axes2_z = inv_uhs_v_1_in_axes2_z;
-    v->uhs_e_1_in_axes3_z = uhs_e_1_in_axes3_z;
-    v->inv_uhs_root_2 = inv_uhs_root_2;
-    v->axis_z_uhs_axes3_x = axis_z_uhs_axes3_x;
-    v->axis_z_uhs_axes3_y = axis_z_uhs_axes3_y;
-    v->axis_z_uhs_axes3_z = axis_z_uhs_axes3_z;
-    v->uhs_g_in_axes2_z = uhs_g_in_axes2_z;
-}
-
-INLINE void stage_uhs_A_X(size_t w, size_t j, const real *A, values_uhs *v)
-{
-    /* (uhs-a_p) acceleration of the connection point without its centripetal part */
-    const real alpha_y = A[4*w + j];
-    const real alpha_z = A[5*w + j];
-    const real t_ddot_x = A[0*w + j];
-    const real uhs_a_p_x = t_ddot_x + alpha_y*v->uhs_q_z - alpha_z*v->uhs_q_y;
-    const real alpha_x = A[3*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real uhs_a_p_y = t_ddot_y + alpha_z*v->uhs_q_x - alpha_x*v->uhs_q_z;
-    const real t_ddot_z = A[2*w + j];
-    const real uhs_a_p_z = t_ddot_z + alpha_x*v->uhs_q_y - alpha_y*v->uhs_q_x;
-    v->uhs_a_p_x = uhs_a_p_x;
-    v->uhs_a_p_y = uhs_a_p_y;
-    v->uhs_a_p_z = uhs_a_p_z;
-}
-
-INLINE void stage_uhs_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_uhs *v)
-{
-    /* (uhs-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real uhs_S_dot_t = omega_y*v->uhs_q_z - omega_z*v->uhs_q_y;
-    const real omega_x = V[3*w + j];
-    const real uhs_S_dot_t_2 = omega_z*v->uhs_q_x - omega_x*v->uhs_q_z;
-    const real uhs_S_dot_t_3 = omega_x*v->uhs_q_y - omega_y*v->uhs_q_x;
-    const real t_dot_x = V[0*w + j];
-    const real uhs_S_dot_x = t_dot_x + uhs_S_dot_t;
-    const real t_dot_y = V[1*w + j];
-    const real uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2;
-    const real t_dot_z = V[2*w + j];
-    const real uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3;
-    /* (uhs-qd_1) rate of joint 1 */
-    const real uhs_qd_1_t = uhs_S_dot_x*m->uhs_base_frame_xx[i] +
-        uhs_S_dot_y*m->uhs_base_frame_yx[i] + uhs_S_dot_z*m->uhs_base_frame_zx[i];
-    const real uhs_qd_1_t_2 = uhs_S_dot_x*m->uhs_base_frame_xy[i] +
-        uhs_S_dot_y*m->uhs_base_frame_yy[i] + uhs_S_dot_z*m->uhs_base_frame_zy[i];
-    /* (uhs-qd_2) rate of joint 2 */
-    const real uhs_qd_2_t = uhs_S_dot_x*m->uhs_base_frame_xz[i] +
-        uhs_S_dot_y*m->uhs_base_frame_yz[i] + uhs_S_dot_z*m->uhs_base_frame_zz[i];
-    /* (uhs-qd_1) */
-    const real uhs_qd_1 = v->inv_uhs_v_1_in_axes2_z*(v->uhs_c_1*uhs_qd_1_t_2 -
-        uhs_qd_1_t*v->uhs_s_1);
-    /* (uhs-qd_2) */
-    const real uhs_qd_2_t_2 = v->uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*v->uhs_s_1;
-    const real uhs_qd_2 = v->inv_uhs_root_2*(v->uhs_e_1_in_axes3_z*uhs_qd_2_t_2 -
-        v->uhs_c_2*uhs_qd_2_t + uhs_qd_1*v->uhs_v_1_t_2);
-    /* (uhs-qd_3) rate of joint 3 */
-    const real uhs_qd_3 = m->inv_uhs_joint3_pitch[i]*(v->uhs_c_2*uhs_qd_2_t_2 +
-        v->uhs_e_1_in_axes3_z*uhs_qd_2_t);
-    /* (uhs-omega_1) angular velocity of link 1 */
-    const real uhs_omega_1_in_axes2_x = v->uhs_e_1_in_axes3_z*uhs_qd_1;
-    const real uhs_omega_1_in_axes2_y = -v->uhs_c_2*uhs_qd_1;
-    /* (uhs-omega_2) angular velocity of link 2 */
-    const real uhs_omega_2_in_axes3_x = v->uhs_c_3*uhs_qd_2 -
-        uhs_omega_1_in_axes2_y*v->uhs_s_3;
-    const real uhs_omega_2_in_axes3_y = -v->uhs_c_3*uhs_omega_1_in_axes2_y -
-        uhs_qd_2*v->uhs_s_3;
-    /* (uhs-W_2) centripetal tensor of link 2 */
-    const real uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2;
-    const real uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2;
-    const real uhs_W_2_in_axes2_xy = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_y;
-    const real uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x;
-    const real uhs_W_2_t_2 = uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y;
-    const real uhs_W_2_in_axes3_xy = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_y;
-    const real uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2;
-    /* (uhs-omega_3) angular velocity of link 3 */
-    const real uhs_omega_3_in_axes3_z = uhs_qd_3 + uhs_omega_1_in_axes2_x;
-    /* (uhs-W_3) centripetal tensor of link 3 */
-    const real uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z;
-    const real uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z;
-    /* (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    const real uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*v->uhs_s_3;
-    const real uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*v->uhs_c_3;
-    /* (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-    const real uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3;
-    const real uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3;
-    /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real uhs_beta_3_in_axes3_x = uhs_zeta_2_in_axes3_x + uhs_zeta_3_in_axes3_x;
-    const real uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y;
-    /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
-    const real uhs_bias_t_2 = m->uhs_bias_t[i]*uhs_qd_3;
-    const real uhs_bias_in_axes3_x = uhs_bias_t_2*uhs_omega_2_in_axes3_y +
-        m->uhs_joint3_offset_x[i]*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x +
-        uhs_zeta_2_in_axes3_y) + v->uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz +
-        uhs_beta_3_in_axes3_y);
-    const real uhs_bias_in_axes3_y =
-        m->uhs_joint3_offset_x[i]*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
-        uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x +
-        v->uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x);
-    const real uhs_bias_in_axes3_z = -uhs_W_2_t_3*m->uhs_joint3_offset_x[i] -
-        uhs_W_2_t_3*v->uhs_x_3_in_axes2_x;
-    v->uhs_S_dot_t = uhs_S_dot_t;
-    v->uhs_S_dot_t_2 = uhs_S_dot_t_2;
-    v->uhs_S_dot_t_3 = uhs_S_dot_t_3;
-    v->uhs_qd_1_t = uhs_qd_1_t;
-    v->uhs_qd_1_t_2 = uhs_qd_1_t_2;
-    v->uhs_qd_2_t = uhs_qd_2_t;
-    v->uhs_qd_2 = uhs_qd_2;
-    v->uhs_qd_3 = uhs_qd_3;
-    v->uhs_omega_1_in_axes2_x = uhs_omega_1_in_axes2_x;
-    v->uhs_omega_1_in_axes2_y = uhs_omega_1_in_axes2_y;
-    v->uhs_omega_2_in_axes3_x = uhs_omega_2_in_axes3_x;
-    v->uhs_omega_2_in_axes3_y = uhs_omega_2_in_axes3_y;
-    v->uhs_W_2_in_axes2_yz = uhs_W_2_in_axes2_yz;
-    v->uhs_W_2_in_axes2_xz = uhs_W_2_in_axes2_xz;
-    v->uhs_W_2_in_axes2_xy = uhs_W_2_in_axes2_xy;
-    v->uhs_W_2_t = uhs_W_2_t;
-    v->uhs_W_2_t_2 = uhs_W_2_t_2;
-    v->uhs_W_2_in_axes3_xy = uhs_W_2_in_axes3_xy;
-    v->uhs_W_2_t_3 = uhs_W_2_t_3;
-    v->uhs_omega_3_in_axes3_z = uhs_omega_3_in_axes3_z;
-    v->uhs_W_3_in_axes3_xz = uhs_W_3_in_axes3_xz;
-    v->uhs_W_3_in_axes3_yz = uhs_W_3_in_axes3_yz;
-    v->uhs_zeta_2_in_axes3_x = uhs_zeta_2_in_axes3_x;
-    v->uhs_zeta_2_in_axes3_y = uhs_zeta_2_in_axes3_y;
-    v->uhs_zeta_3_in_axes3_x = uhs_zeta_3_in_axes3_x;
-    v->uhs_zeta_3_in_axes3_y = uhs_zeta_3_in_axes3_y;
-    v->uhs_bias_t_2 = uhs_bias_t_2;
-    v->uhs_bias_in_axes3_x = uhs_bias_in_axes3_x;
-    v->uhs_bias_in_axes3_y = uhs_bias_in_axes3_y;
-    v->uhs_bias_in_axes3_z = uhs_bias_in_axes3_z;
-}
-
-INLINE void stage_uhs_A_V_X(size_t w, size_t j, const real *V, values_uhs *v)
-{
-    /* (uhs-S_ddot) acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real uhs_S_ddot_x = omega_y*v->uhs_S_dot_t_3 - omega_z*v->uhs_S_dot_t_2 +
-        v->uhs_a_p_x;
-    const real omega_x = V[3*w + j];
-    const real uhs_S_ddot_y = omega_z*v->uhs_S_dot_t - omega_x*v->uhs_S_dot_t_3 +
-        v->uhs_a_p_y;
-    const real uhs_S_ddot_z = omega_x*v->uhs_S_dot_t_2 - omega_y*v->uhs_S_dot_t +
-        v->uhs_a_p_z;
-    v->uhs_S_ddot_x = uhs_S_ddot_x;
-    v->uhs_S_ddot_y = uhs_S_ddot_y;
-    v->uhs_S_ddot_z = uhs_S_ddot_z;
-}
-
-INLINE void stage_uhs_H_condition(const prepared *m, size_t i, values_uhs *v)
-{
-    /* (uhs-w_3) reciprocal vector 3 */
-    const real uhs_w_3_x = m->inv_uhs_joint3_pitch[i]*v->inv_uhs_root_2*v->uhs_S_x;
-    const real uhs_w_3_y = m->inv_uhs_joint3_pitch[i]*v->inv_uhs_root_2*v->uhs_S_y;
-    const real uhs_w_3_z = m->inv_uhs_joint3_pitch[i]*v->inv_uhs_root_2*v->uhs_S_z;
-    /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
-    const real uhs_H_a_3_x = v->uhs_q_y*uhs_w_3_z - v->uhs_q_z*uhs_w_3_y;
-    const real uhs_H_a_3_y = v->uhs_q_z*uhs_w_3_x - v->uhs_q_x*uhs_w_3_z;
-    const real uhs_H_a_3_z = v->uhs_q_x*uhs_w_3_y - v->uhs_q_y*uhs_w_3_x;
-    v->uhs_w_3_x = uhs_w_3_x;
-    v->uhs_w_3_y = uhs_w_3_y;
-    v->uhs_w_3_z = uhs_w_3_z;
-    v->uhs_H_a_3_x = uhs_H_a_3_x;
-    v->uhs_H_a_3_y = uhs_H_a_3_y;
-    v->uhs_H_a_3_z = uhs_H_a_3_z;
-}
-
-INLINE void stage_uhs_M_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *X,
-    values_uhs *v)
-{
-    /* (uhs-h_3) first moment of link 3 about the connection point */
     const real t_x = X[0*w + j];
     const real uhs_h_3_t = t_x - m->uhs_base_point_x[i] + v->uhs_q_x;
     const real t_y = X[1*w + j];
@@ -1917,270 +1668,508 @@ INLINE void stage_uhs_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
         m->uhs_base_frame_yy[i]*uhs_h_3_t_2 + m->uhs_base_frame_zy[i]*uhs_h_3_t_3;
     const real uhs_h_3_t_6 = m->uhs_base_frame_xz[i]*uhs_h_3_t +
         m->uhs_base_frame_yz[i]*uhs_h_3_t_2 + m->uhs_base_frame_zz[i]*uhs_h_3_t_3;
-    const real uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5;
-    const real uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7;
-    const real uhs_h_3_t_9 = m->uhs_branch_2[i]*root(uhs_h_3_t_8);
-    const real uhs_h_3_t_10 = uhs_h_3_t_9 - m->uhs_joint3_offset_x[i];
-    const real uhs_h_3_t_11 = m->inv_uhs_joint3_pitch[i]*(m->uhs_platform_joint_offset_x[i] -
-        uhs_h_3_t_10);
-    const real uhs_e_2_in_axes3_x = cosine(uhs_h_3_t_11);
-    const real uhs_h_3_t_12 = -sine(uhs_h_3_t_11);
-    const real uhs_h_3_in_spec2_z = uhs_e_2_in_axes3_x*m->uhs_h_3_in_spec3_z[i] +
-        m->uhs_h_3_in_spec3_y[i]*uhs_h_3_t_12;
-    /* (uhs-J_3) inertia tensor of link 3 about the connection point */
-    const real uhs_J_3_in_axes2_xz = m->uhs_J_3_in_spec3_xy[i]*uhs_e_2_in_axes3_x -
-        m->uhs_J_3_in_spec3_xz[i]*uhs_h_3_t_12;
+    v->uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5;
+    v->uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + v->uhs_h_3_t_7;
+    v->uhs_h_3_t_9 = m->uhs_branch_2[i]*root(v->uhs_h_3_t_8);
+    v->uhs_h_3_t_10 = v->uhs_h_3_t_9 - m->uhs_joint3_offset_x[i];
+    v->uhs_h_3_t_11 = m->inv_uhs_joint3_pitch[i]*(m->uhs_platform_joint_offset_x[i] -
+        v->uhs_h_3_t_10);
+    v->uhs_e_2_in_axes3_x = cosine(v->uhs_h_3_t_11);
+    v->uhs_h_3_t_12 = -sine(v->uhs_h_3_t_11);
+    v->uhs_h_3_in_spec2_z = v->uhs_e_2_in_axes3_x*m->uhs_h_3_in_spec3_z[i] +
+        m->uhs_h_3_in_spec3_y[i]*v->uhs_h_3_t_12;
     /* (uhs-root_1) root, with the sign of the branch */
-    const real uhs_root_1 = m->uhs_branch_1[i]*root(uhs_h_3_t_7);
+    const real uhs_root_1 = m->uhs_branch_1[i]*root(v->uhs_h_3_t_7);
     /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_uhs_h_3_t_7 = 1/uhs_h_3_t_7;
-    const real uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1;
+    const real inv_uhs_h_3_t_7 = 1/v->uhs_h_3_t_7;
+    v->uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1;
     /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
-    const real uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1;
+    v->uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1;
     /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_uhs_h_3_t_8 = 1/uhs_h_3_t_8;
-    const real uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1;
+    const real inv_uhs_h_3_t_8 = 1/v->uhs_h_3_t_8;
+    v->uhs_c_2 = inv_uhs_h_3_t_8*v->uhs_h_3_t_9*uhs_root_1;
+    /* (uhs-q_2) displacement of joint 2 */
+    v->uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*v->uhs_h_3_t_9;
     /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-    const real uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12;
-    const real uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x;
-    const real uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9;
-    const real uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9;
-    const real uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x +
-        uhs_h_3_t_12*uhs_v_1_t;
-    const real uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t;
+    v->uhs_e_1_in_axes3_x = v->uhs_c_2*v->uhs_h_3_t_12;
+    v->uhs_e_1_in_axes3_y = v->uhs_c_2*v->uhs_e_2_in_axes3_x;
+    const real uhs_v_1_in_axes3_x = v->uhs_e_1_in_axes3_y*v->uhs_h_3_t_9;
+    const real uhs_v_1_t = v->uhs_e_1_in_axes3_x*v->uhs_h_3_t_9;
+    v->uhs_v_1_in_axes2_z = v->uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x +
+        v->uhs_h_3_t_12*uhs_v_1_t;
+    v->uhs_v_1_t_2 = v->uhs_h_3_t_12*uhs_v_1_in_axes3_x - v->uhs_e_2_in_axes3_x*uhs_v_1_t;
     /* (uhs-w_1) reciprocal vector 1 */
-    const real inv_uhs_v_1_in_axes2_z = 1/uhs_v_1_in_axes2_z;
-    const real uhs_w_1_in_axes3_x = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_x;
-    const real uhs_w_1_in_axes3_y = -inv_uhs_v_1_in_axes2_z*uhs_h_3_t_12;
+    v->inv_uhs_v_1_in_axes2_z = 1/v->uhs_v_1_in_axes2_z;
     /* (uhs-w_2) reciprocal vector 2 */
-    const real inv_uhs_h_3_t_9 = 1/uhs_h_3_t_9;
-    const real uhs_w_2_t = inv_uhs_h_3_t_9*inv_uhs_v_1_in_axes2_z*uhs_v_1_t_2;
-    const real uhs_w_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_w_2_t -
-        inv_uhs_h_3_t_9*uhs_h_3_t_12;
-    const real uhs_w_2_in_axes3_y = -inv_uhs_h_3_t_9*uhs_e_2_in_axes3_x -
-        uhs_h_3_t_12*uhs_w_2_t;
+    v->inv_uhs_h_3_t_9 = 1/v->uhs_h_3_t_9;
     /* (uhs-w_3) reciprocal vector 3 */
-    const real axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t;
-    const real axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2;
-    const real axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3;
+    v->axis_z_uhs_axes3_x = v->inv_uhs_h_3_t_9*uhs_h_3_t;
+    v->axis_z_uhs_axes3_y = v->inv_uhs_h_3_t_9*uhs_h_3_t_2;
+    v->axis_z_uhs_axes3_z = v->inv_uhs_h_3_t_9*uhs_h_3_t_3;
+    v->uhs_w_3_x = v->axis_z_uhs_axes3_x*m->inv_uhs_joint3_pitch[i];
+    v->uhs_w_3_y = v->axis_z_uhs_axes3_y*m->inv_uhs_joint3_pitch[i];
+    v->uhs_w_3_z = v->axis_z_uhs_axes3_z*m->inv_uhs_joint3_pitch[i];
+    /* (uhs-u_1) centripetal acceleration of the connection point */
+    const real uhs_u_1_t = v->uhs_e_1_in_axes3_z*v->uhs_e_2_in_axes3_x;
+    const real uhs_u_1_t_2 = v->uhs_h_3_t_12*v->uhs_s_1 - v->uhs_c_1*uhs_u_1_t;
+    const real uhs_u_1_t_3 = -v->uhs_c_1*v->uhs_h_3_t_12 - v->uhs_s_1*uhs_u_1_t;
+    v->axis_y_uhs_axes3_x = m->uhs_base_frame_xz[i]*v->uhs_e_1_in_axes3_y +
+        m->uhs_base_frame_xx[i]*uhs_u_1_t_2 + m->uhs_base_frame_xy[i]*uhs_u_1_t_3;
+    v->axis_y_uhs_axes3_y = m->uhs_base_frame_yz[i]*v->uhs_e_1_in_axes3_y +
+        m->uhs_base_frame_yx[i]*uhs_u_1_t_2 + m->uhs_base_frame_yy[i]*uhs_u_1_t_3;
+    v->axis_y_uhs_axes3_z = m->uhs_base_frame_zz[i]*v->uhs_e_1_in_axes3_y +
+        m->uhs_base_frame_zx[i]*uhs_u_1_t_2 + m->uhs_base_frame_zy[i]*uhs_u_1_t_3;
+    v->axis_x_uhs_axes3_x = v->axis_y_uhs_axes3_y*v->axis_z_uhs_axes3_z -
+        v->axis_y_uhs_axes3_z*v->axis_z_uhs_axes3_y;
+    v->axis_x_uhs_axes3_y = v->axis_y_uhs_axes3_z*v->axis_z_uhs_axes3_x -
+        v->axis_y_uhs_axes3_x*v->axis_z_uhs_axes3_z;
+    v->axis_x_uhs_axes3_z = v->axis_y_uhs_axes3_x*v->axis_z_uhs_axes3_y -
+        v->axis_y_uhs_axes3_y*v->axis_z_uhs_axes3_x;
+    /* (uhs-acc_3) acceleration of the reference point of link 3, less gravity */
+    v->uhs_g_in_axes3_x = v->axis_x_uhs_axes3_x*m->gravity_x +
+        v->axis_x_uhs_axes3_y*m->gravity_y + v->axis_x_uhs_axes3_z*m->gravity_z;
+    v->uhs_g_in_axes3_y = v->axis_y_uhs_axes3_x*m->gravity_x +
+        v->axis_y_uhs_axes3_y*m->gravity_y + v->axis_y_uhs_axes3_z*m->gravity_z;
+    v->uhs_g_in_axes3_z = v->axis_z_uhs_axes3_x*m->gravity_x +
+        v->axis_z_uhs_axes3_y*m->gravity_y + v->axis_z_uhs_axes3_z*m->gravity_z;
+    /* (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real uhs_mu_2_t_7 = v->uhs_c_1*m->uhs_mu_2_t[i] + m->uhs_mu_2_t_2[i]*v->uhs_s_1;
+    v->uhs_g_in_axes2_z = v->uhs_c_1*m->uhs_mu_2_t_2[i] - m->uhs_mu_2_t[i]*v->uhs_s_1;
+    v->uhs_g_in_axes2_x = v->uhs_c_2*uhs_mu_2_t_7 + v->uhs_e_1_in_axes3_z*m->uhs_mu_2_t_3[i];
+    v->uhs_g_in_axes2_y = v->uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - v->uhs_c_2*m->uhs_mu_2_t_3[i];
+    v->uhs_mu_2_t_11 = v->uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_z[i] +
+        v->uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_y[i];
+    v->uhs_mu_2_t_12 = v->uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_y[i] -
+        v->uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_x[i];
+    v->uhs_mu_2_t_13 = v->uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_z[i] +
+        v->uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_x[i];
+    /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
+    v->uhs_H_a_3_x = v->uhs_q_y*v->uhs_w_3_z - v->uhs_q_z*v->uhs_w_3_y;
+    v->uhs_H_a_3_y = v->uhs_q_z*v->uhs_w_3_x - v->uhs_q_x*v->uhs_w_3_z;
+    v->uhs_H_a_3_z = v->uhs_q_x*v->uhs_w_3_y - v->uhs_q_y*v->uhs_w_3_x;
+}
+
+INLINE void stage_uhs_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_uhs *v)
+{
+    /* (uhs-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    v->uhs_S_dot_t = omega_y*v->uhs_q_z - omega_z*v->uhs_q_y;
+    const real omega_x = V[3*w + j];
+    v->uhs_S_dot_t_2 = omega_z*v->uhs_q_x - omega_x*v->uhs_q_z;
+    v->uhs_S_dot_t_3 = omega_x*v->uhs_q_y - omega_y*v->uhs_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real uhs_S_dot_x = t_dot_x + v->uhs_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real uhs_S_dot_y = t_dot_y + v->uhs_S_dot_t_2;
+    const real t_dot_z = V[2*w + j];
+    const real uhs_S_dot_z = t_dot_z + v->uhs_S_dot_t_3;
+    /* (uhs-qd_1) rate of joint 1 */
+    const real uhs_qd_1_t = uhs_S_dot_x*m->uhs_base_frame_xx[i] +
+        uhs_S_dot_y*m->uhs_base_frame_yx[i] + uhs_S_dot_z*m->uhs_base_frame_zx[i];
+    const real uhs_qd_1_t_2 = uhs_S_dot_x*m->uhs_base_frame_xy[i] +
+        uhs_S_dot_y*m->uhs_base_frame_yy[i] + uhs_S_dot_z*m->uhs_base_frame_zy[i];
+    v->uhs_qd_1 = v->inv_uhs_v_1_in_axes2_z*(v->uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*v->uhs_s_1);
     /* (uhs-qd_2) rate of joint 2 */
-    const real uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9;
+    const real uhs_qd_2_t = uhs_S_dot_x*m->uhs_base_frame_xz[i] +
+        uhs_S_dot_y*m->uhs_base_frame_yz[i] + uhs_S_dot_z*m->uhs_base_frame_zz[i];
+    const real uhs_qd_2_t_2 = v->uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*v->uhs_s_1;
+    v->uhs_qd_2 = v->inv_uhs_h_3_t_9*(v->uhs_e_1_in_axes3_z*uhs_qd_2_t_2 -
+        v->uhs_c_2*uhs_qd_2_t + v->uhs_qd_1*v->uhs_v_1_t_2);
+    /* (uhs-qd_3) rate of joint 3 */
+    v->uhs_qd_3 = m->inv_uhs_joint3_pitch[i]*(v->uhs_c_2*uhs_qd_2_t_2 +
+        v->uhs_e_1_in_axes3_z*uhs_qd_2_t);
+    /* (uhs-omega_1) angular velocity of link 1 */
+    const real uhs_omega_1_in_axes2_x = v->uhs_e_1_in_axes3_z*v->uhs_qd_1;
+    const real uhs_omega_1_in_axes2_y = -v->uhs_c_2*v->uhs_qd_1;
+    /* (uhs-omega_2) angular velocity of link 2 */
+    const real uhs_omega_2_in_axes3_x = v->uhs_e_2_in_axes3_x*v->uhs_qd_2 -
+        v->uhs_h_3_t_12*uhs_omega_1_in_axes2_y;
+    const real uhs_omega_2_in_axes3_y = -v->uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y -
+        v->uhs_h_3_t_12*v->uhs_qd_2;
+    /* (uhs-W_2) centripetal tensor of link 2 */
+    v->uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*v->uhs_qd_2;
+    v->uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*v->uhs_qd_2;
+    v->uhs_W_2_in_axes2_xy = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_y;
+    const real uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x;
+    const real uhs_W_2_t_2 = uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y;
+    v->uhs_W_2_in_axes3_xy = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_y;
+    const real uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2;
+    /* (uhs-omega_3) angular velocity of link 3 */
+    const real uhs_omega_3_in_axes3_z = v->uhs_qd_3 + uhs_omega_1_in_axes2_x;
+    /* (uhs-W_3) centripetal tensor of link 3 */
+    v->uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z;
+    v->uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z;
+    /* (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    const real uhs_zeta_2_in_axes3_x = v->uhs_W_2_in_axes2_xz*v->uhs_h_3_t_12;
+    const real uhs_zeta_2_in_axes3_y = v->uhs_W_2_in_axes2_xz*v->uhs_e_2_in_axes3_x;
+    /* (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+    v->uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*v->uhs_qd_3;
+    v->uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*v->uhs_qd_3;
+    /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real uhs_beta_3_in_axes3_x = uhs_zeta_2_in_axes3_x + v->uhs_zeta_3_in_axes3_x;
+    const real uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + v->uhs_zeta_3_in_axes3_y;
+    /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
+    const real uhs_bias_t_2 = m->uhs_bias_t[i]*v->uhs_qd_3;
+    v->uhs_bias_in_axes3_x = uhs_bias_t_2*uhs_omega_2_in_axes3_y +
+        m->uhs_joint3_offset_x[i]*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x +
+        uhs_zeta_2_in_axes3_y) + v->uhs_h_3_t_10*(v->uhs_W_3_in_axes3_xz +
+        uhs_beta_3_in_axes3_y);
+    v->uhs_bias_in_axes3_y =
+        m->uhs_joint3_offset_x[i]*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+        uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x +
+        v->uhs_h_3_t_10*(v->uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x);
+    v->uhs_bias_in_axes3_z = -uhs_W_2_t_3*v->uhs_h_3_t_10 -
+        uhs_W_2_t_3*m->uhs_joint3_offset_x[i];
+    /* (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    const real uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z;
+    v->uhs_mu_3_t_2 = m->uhs_J_3_in_spec3_xz[i]*(uhs_W_2_t_2 - uhs_mu_3_t);
+    v->uhs_mu_3_t_3 = m->uhs_J_3_in_spec3_xy[i]*(uhs_W_2_t - uhs_mu_3_t);
+    v->uhs_mu_3_t_4 = m->uhs_J_3_in_spec3_yz[i]*(uhs_W_2_t - uhs_W_2_t_2);
+    /* (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x;
+    const real uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y;
+    const real uhs_mu_2_t_6 = v->uhs_qd_2*v->uhs_qd_2;
+    v->uhs_mu_2_t_8 = m->uhs_J_2_in_spec2_yz[i]*(uhs_mu_2_t_5 - uhs_mu_2_t_6);
+    v->uhs_mu_2_t_9 = m->uhs_J_2_in_spec2_xy[i]*(uhs_mu_2_t_4 - uhs_mu_2_t_6);
+    v->uhs_mu_2_t_10 = m->uhs_J_2_in_spec2_xz[i]*(uhs_mu_2_t_4 - uhs_mu_2_t_5);
+    /* (uhs-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->uhs_c_t = m->uhs_h_3_in_spec3_y[i]*(uhs_mu_3_t + uhs_W_2_t_2);
+    v->uhs_c_t_2 = m->uhs_h_3_in_spec3_z[i]*(uhs_mu_3_t + uhs_W_2_t);
+    v->uhs_c_t_3 = uhs_W_2_t_3*m->uhs_h_3_in_spec3_x[i];
+}
+
+INLINE void stage_uhs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
+    real *A, values_uhs *v)
+{
+    /* (uhs-S_ddot) acceleration of the connection point */
+    const real B_p_xy = s[9*w + j];
+    const real B_p_xz = s[10*w + j];
+    const real W_p_t_4 = s[11*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real uhs_S_ddot_x = t_ddot_x + B_p_xy*v->uhs_q_y + B_p_xz*v->uhs_q_z -
+        W_p_t_4*v->uhs_q_x;
+    const real B_p_yx = s[12*w + j];
+    const real B_p_yz = s[13*w + j];
+    const real W_p_t_5 = s[14*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real uhs_S_ddot_y = t_ddot_y + B_p_yx*v->uhs_q_x + B_p_yz*v->uhs_q_z -
+        W_p_t_5*v->uhs_q_y;
+    const real B_p_zx = s[15*w + j];
+    const real B_p_zy = s[16*w + j];
+    const real W_p_t_6 = s[17*w + j];
+    const real t_ddot_z = A[2*w + j];
+    const real uhs_S_ddot_z = t_ddot_z + B_p_zx*v->uhs_q_x + B_p_zy*v->uhs_q_y -
+        W_p_t_6*v->uhs_q_z;
+    v->uhs_S_ddot_in_axes3_x = v->axis_x_uhs_axes3_x*uhs_S_ddot_x +
+        v->axis_x_uhs_axes3_y*uhs_S_ddot_y + v->axis_x_uhs_axes3_z*uhs_S_ddot_z;
+    v->uhs_S_ddot_in_axes3_y = v->axis_y_uhs_axes3_x*uhs_S_ddot_x +
+        v->axis_y_uhs_axes3_y*uhs_S_ddot_y + v->axis_y_uhs_axes3_z*uhs_S_ddot_z;
+    v->uhs_S_ddot_in_axes3_z = v->axis_z_uhs_axes3_x*uhs_S_ddot_x +
+        v->axis_z_uhs_axes3_y*uhs_S_ddot_y + v->axis_z_uhs_axes3_z*uhs_S_ddot_z;
+    /* (uhs-rel) acceleration of the connection point left to the joint accelerations */
+    const real uhs_rel_in_axes3_x = v->uhs_S_ddot_in_axes3_x - v->uhs_bias_in_axes3_x;
+    const real uhs_rel_in_axes3_y = v->uhs_S_ddot_in_axes3_y - v->uhs_bias_in_axes3_y;
+    const real uhs_rel_in_axes3_z = v->uhs_S_ddot_in_axes3_z - v->uhs_bias_in_axes3_z;
+    /* (uhs-qdd_1) acceleration of joint 1 */
+    v->uhs_qdd_1 = v->inv_uhs_v_1_in_axes2_z*(v->uhs_e_2_in_axes3_x*uhs_rel_in_axes3_x -
+        v->uhs_h_3_t_12*uhs_rel_in_axes3_y);
+    /* (uhs-qdd_2) acceleration of joint 2 */
+    v->uhs_qdd_2 = v->inv_uhs_h_3_t_9*(v->uhs_qdd_1*v->uhs_v_1_t_2 -
+        v->uhs_e_2_in_axes3_x*uhs_rel_in_axes3_y - v->uhs_h_3_t_12*uhs_rel_in_axes3_x);
+    /* (uhs-qdd_3) acceleration of joint 3 */
+    v->uhs_qdd_3 = m->inv_uhs_joint3_pitch[i]*uhs_rel_in_axes3_z;
+}
+
+INLINE void stage_uhs_M_dynamics(const prepared *m, size_t i, values_uhs *v)
+{
+    /* (uhs-J_3) inertia tensor of link 3 about the connection point */
+    const real uhs_J_3_in_axes2_xz = m->uhs_J_3_in_spec3_xy[i]*v->uhs_e_2_in_axes3_x -
+        m->uhs_J_3_in_spec3_xz[i]*v->uhs_h_3_t_12;
+    /* (uhs-w_1) reciprocal vector 1 */
+    const real uhs_w_1_in_axes3_x = v->inv_uhs_v_1_in_axes2_z*v->uhs_e_2_in_axes3_x;
+    const real uhs_w_1_in_axes3_y = -v->inv_uhs_v_1_in_axes2_z*v->uhs_h_3_t_12;
+    /* (uhs-w_2) reciprocal vector 2 */
+    const real uhs_w_2_t = v->inv_uhs_h_3_t_9*v->inv_uhs_v_1_in_axes2_z*v->uhs_v_1_t_2;
+    const real uhs_w_2_in_axes3_x = v->uhs_e_2_in_axes3_x*uhs_w_2_t -
+        v->inv_uhs_h_3_t_9*v->uhs_h_3_t_12;
+    const real uhs_w_2_in_axes3_y = -v->inv_uhs_h_3_t_9*v->uhs_e_2_in_axes3_x -
+        v->uhs_h_3_t_12*uhs_w_2_t;
     /* (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-    const real uhs_d_alpha_3_in_axes3_zy = uhs_e_1_in_axes3_z*uhs_w_1_in_axes3_y;
+    const real uhs_d_alpha_3_in_axes3_zy = v->uhs_e_1_in_axes3_z*uhs_w_1_in_axes3_y;
     /* (uhs-D_1_3) inertia of joint 3 along joint 1 */
-    const real uhs_D_1_3 = m->uhs_J_3_in_spec3_xx[i]*uhs_e_1_in_axes3_z +
-        m->uhs_J_3_in_spec3_xy[i]*uhs_e_1_in_axes3_x +
-        m->uhs_J_3_in_spec3_xz[i]*uhs_e_1_in_axes3_y;
+    const real uhs_D_1_3 = m->uhs_J_3_in_spec3_xx[i]*v->uhs_e_1_in_axes3_z +
+        m->uhs_J_3_in_spec3_xy[i]*v->uhs_e_1_in_axes3_x +
+        m->uhs_J_3_in_spec3_xz[i]*v->uhs_e_1_in_axes3_y;
     /* (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
        about the connection point */
-    const real uhs_Jc_2_t = m->uhs_J_3_in_spec3_yz[i]*uhs_h_3_t_12;
-    const real uhs_Jc_2_t_2 = m->uhs_J_3_in_spec3_yz[i]*uhs_e_2_in_axes3_x;
-    const real uhs_Jc_2_t_3 = m->uhs_J_3_in_spec3_yy[i]*uhs_h_3_t_12 + uhs_Jc_2_t_2;
-    const real uhs_Jc_2_t_4 = m->uhs_J_3_in_spec3_zz[i]*uhs_e_2_in_axes3_x + uhs_Jc_2_t;
+    const real uhs_Jc_2_t = m->uhs_J_3_in_spec3_yz[i]*v->uhs_h_3_t_12;
+    const real uhs_Jc_2_t_2 = m->uhs_J_3_in_spec3_yz[i]*v->uhs_e_2_in_axes3_x;
+    const real uhs_Jc_2_t_3 = m->uhs_J_3_in_spec3_yy[i]*v->uhs_h_3_t_12 + uhs_Jc_2_t_2;
+    const real uhs_Jc_2_t_4 = m->uhs_J_3_in_spec3_zz[i]*v->uhs_e_2_in_axes3_x + uhs_Jc_2_t;
     const real uhs_Jc_2_in_axes2_xy = -m->uhs_J_2_in_spec2_xz[i] -
-        m->uhs_J_3_in_spec3_xy[i]*uhs_h_3_t_12 - m->uhs_J_3_in_spec3_xz[i]*uhs_e_2_in_axes3_x;
-    const real uhs_Jc_2_in_axes1_yz = uhs_e_1_in_axes3_z*(m->uhs_J_2_in_spec2_xy[i] +
-        uhs_J_3_in_axes2_xz) - uhs_c_2*(uhs_Jc_2_t_4*uhs_h_3_t_12 - m->uhs_J_2_in_spec2_yz[i]
-        - uhs_Jc_2_t_3*uhs_e_2_in_axes3_x);
+        m->uhs_J_3_in_spec3_xy[i]*v->uhs_h_3_t_12 -
+        m->uhs_J_3_in_spec3_xz[i]*v->uhs_e_2_in_axes3_x;
+    const real uhs_Jc_2_t_5 = v->uhs_c_2*(uhs_Jc_2_t_4*v->uhs_h_3_t_12 -
+        m->uhs_J_2_in_spec2_yz[i] - uhs_Jc_2_t_3*v->uhs_e_2_in_axes3_x) -
+        v->uhs_e_1_in_axes3_z*(m->uhs_J_2_in_spec2_xy[i] + uhs_J_3_in_axes2_xz);
     /* (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real uhs_d_Gamma_2_t = inv_uhs_h_3_t_9*(m->uhs_J_2_in_spec2_yy[i] +
-        uhs_e_2_in_axes3_x*(m->uhs_J_3_in_spec3_yy[i]*uhs_e_2_in_axes3_x - uhs_Jc_2_t) -
-        uhs_h_3_t_12*(uhs_Jc_2_t_2 - m->uhs_J_3_in_spec3_zz[i]*uhs_h_3_t_12));
-    const real uhs_d_Gamma_2_t_2 = inv_uhs_v_1_in_axes2_z*(-uhs_Jc_2_in_axes1_yz -
-        uhs_d_Gamma_2_t*uhs_v_1_t_2);
-    const real uhs_d_Gamma_2_in_axes2_x = uhs_h_3_in_spec2_z +
+    const real uhs_d_Gamma_2_t = v->inv_uhs_h_3_t_9*(m->uhs_J_2_in_spec2_yy[i] +
+        v->uhs_e_2_in_axes3_x*(m->uhs_J_3_in_spec3_yy[i]*v->uhs_e_2_in_axes3_x - uhs_Jc_2_t) -
+        v->uhs_h_3_t_12*(uhs_Jc_2_t_2 - m->uhs_J_3_in_spec3_zz[i]*v->uhs_h_3_t_12));
+    const real uhs_d_Gamma_2_t_2 = v->inv_uhs_v_1_in_axes2_z*(uhs_Jc_2_t_5 -
+        uhs_d_Gamma_2_t*v->uhs_v_1_t_2);
+    const real uhs_d_Gamma_2_in_axes2_x = v->uhs_h_3_in_spec2_z +
         m->inv_uhs_joint3_pitch[i]*uhs_J_3_in_axes2_xz;
     const real uhs_d_Gamma_2_in_axes2_y = m->uhs_h_3_in_spec3_x[i] + uhs_d_Gamma_2_t;
-    const real uhs_d_Gamma_2_in_axes3_y = uhs_d_Gamma_2_t_2*uhs_h_3_t_12 -
-        uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x;
+    const real uhs_d_Gamma_2_in_axes3_y = uhs_d_Gamma_2_t_2*v->uhs_h_3_t_12 -
+        uhs_d_Gamma_2_in_axes2_y*v->uhs_e_2_in_axes3_x;
     /* (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_in_axes1_yz;
-    const real uhs_d_Gamma_1_t_2 = uhs_c_2*(uhs_c_2*(m->uhs_J_2_in_spec2_zz[i] +
-        uhs_Jc_2_t_3*uhs_h_3_t_12 + uhs_Jc_2_t_4*uhs_e_2_in_axes3_x) -
-        uhs_Jc_2_in_axes2_xy*uhs_e_1_in_axes3_z) -
-        uhs_e_1_in_axes3_z*(uhs_Jc_2_in_axes2_xy*uhs_c_2 -
-        m->uhs_Jc_2_in_axes2_xx[i]*uhs_e_1_in_axes3_z) + uhs_d_Gamma_1_t*uhs_v_1_t_2;
-    const real uhs_d_Gamma_1_t_3 = m->inv_uhs_joint3_pitch[i]*uhs_D_1_3;
-    const real uhs_d_Gamma_1_in_axes1_z = uhs_d_Gamma_1_t_3*uhs_e_1_in_axes3_z -
-        uhs_c_2*uhs_d_Gamma_1_t;
-    const real uhs_d_Gamma_1_in_axes1_x = m->uhs_h_3_in_spec3_z[i]*uhs_h_3_t_12 -
-        uhs_e_2_in_axes3_x*m->uhs_h_3_in_spec3_y[i] + uhs_c_2*uhs_d_Gamma_1_t_3 +
-        uhs_d_Gamma_1_t*uhs_e_1_in_axes3_z;
-    const real uhs_d_Gamma_1_in_axes1_y = uhs_c_2*m->uhs_h_3_in_spec3_x[i] -
-        uhs_e_1_in_axes3_z*uhs_h_3_in_spec2_z + inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2;
-    const real uhs_d_Gamma_1_in_axes3_z = uhs_c_2*uhs_d_Gamma_1_in_axes1_x +
-        uhs_d_Gamma_1_in_axes1_z*uhs_e_1_in_axes3_z;
-    const real uhs_d_Gamma_1_t_4 = uhs_d_Gamma_1_in_axes1_x*uhs_e_1_in_axes3_z -
-        uhs_c_2*uhs_d_Gamma_1_in_axes1_z;
-    const real uhs_d_Gamma_1_in_axes3_y = -uhs_d_Gamma_1_in_axes1_y*uhs_h_3_t_12 -
-        uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_x;
+    const real uhs_d_Gamma_1_t = v->inv_uhs_h_3_t_9*uhs_Jc_2_t_5;
+    const real uhs_d_Gamma_1_t_2 = v->uhs_c_2*(v->uhs_c_2*(m->uhs_J_2_in_spec2_zz[i] +
+        uhs_Jc_2_t_3*v->uhs_h_3_t_12 + uhs_Jc_2_t_4*v->uhs_e_2_in_axes3_x) -
+        uhs_Jc_2_in_axes2_xy*v->uhs_e_1_in_axes3_z) -
+        v->uhs_e_1_in_axes3_z*(uhs_Jc_2_in_axes2_xy*v->uhs_c_2 -
+        m->uhs_Jc_2_in_axes2_xx[i]*v->uhs_e_1_in_axes3_z) - uhs_d_Gamma_1_t*v->uhs_v_1_t_2;
+    const real uhs_d_Gamma_1_t_3 = v->inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2;
+    const real uhs_d_Gamma_1_in_axes3_x = v->uhs_e_1_in_axes3_y*m->uhs_h_3_in_spec3_x[i] -
+        v->uhs_e_1_in_axes3_z*m->uhs_h_3_in_spec3_z[i] + uhs_d_Gamma_1_t*v->uhs_h_3_t_12 +
+        uhs_d_Gamma_1_t_3*v->uhs_e_2_in_axes3_x;
+    const real uhs_d_Gamma_1_in_axes3_y = v->uhs_e_1_in_axes3_z*m->uhs_h_3_in_spec3_y[i] -
+        v->uhs_e_1_in_axes3_x*m->uhs_h_3_in_spec3_x[i] + uhs_d_Gamma_1_t*v->uhs_e_2_in_axes3_x
+        - uhs_d_Gamma_1_t_3*v->uhs_h_3_t_12;
+    const real uhs_d_Gamma_1_in_axes3_z = v->uhs_e_1_in_axes3_x*m->uhs_h_3_in_spec3_z[i] -
+        v->uhs_e_1_in_axes3_y*m->uhs_h_3_in_spec3_y[i] + m->inv_uhs_joint3_pitch[i]*uhs_D_1_3;
     /* (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
     const real uhs_d_c_in_axes3_xx =
-        uhs_e_1_in_axes3_z*m->uhs_h_3_in_spec3_z[i]*uhs_w_1_in_axes3_x -
-        uhs_w_1_in_axes3_x*(uhs_d_Gamma_1_in_axes1_y*uhs_e_2_in_axes3_x -
-        uhs_d_Gamma_1_t_4*uhs_h_3_t_12) -
-        uhs_w_2_in_axes3_x*(-uhs_d_Gamma_2_in_axes2_y*uhs_h_3_t_12 -
-        uhs_d_Gamma_2_t_2*uhs_e_2_in_axes3_x) -
-        m->uhs_h_3_in_spec3_x[i]*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x -
-        uhs_h_3_t_12*uhs_w_2_in_axes3_x);
+        v->uhs_e_1_in_axes3_z*m->uhs_h_3_in_spec3_z[i]*uhs_w_1_in_axes3_x -
+        uhs_d_Gamma_1_in_axes3_x*uhs_w_1_in_axes3_x -
+        uhs_w_2_in_axes3_x*(-uhs_d_Gamma_2_in_axes2_y*v->uhs_h_3_t_12 -
+        uhs_d_Gamma_2_t_2*v->uhs_e_2_in_axes3_x) -
+        m->uhs_h_3_in_spec3_x[i]*(v->uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x -
+        v->uhs_h_3_t_12*uhs_w_2_in_axes3_x);
     const real uhs_d_c_in_axes3_xy = uhs_d_alpha_3_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
         uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_x -
         uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_x -
-        m->uhs_h_3_in_spec3_x[i]*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_y -
-        uhs_h_3_t_12*uhs_w_2_in_axes3_y);
+        m->uhs_h_3_in_spec3_x[i]*(v->uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_y -
+        v->uhs_h_3_t_12*uhs_w_2_in_axes3_y);
     const real uhs_d_c_in_axes3_xz = m->uhs_d_phi_3_t[i] -
         uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_x -
         uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_x;
     const real uhs_d_c_in_axes3_yz = -m->uhs_d_phi_3_in_axes3_yz[i] -
         uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_y -
         uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_y;
-    v->uhs_h_3_t_7 = uhs_h_3_t_7;
-    v->uhs_h_3_t_8 = uhs_h_3_t_8;
-    v->uhs_h_3_t_9 = uhs_h_3_t_9;
-    v->uhs_h_3_t_10 = uhs_h_3_t_10;
-    v->uhs_e_2_in_axes3_x = uhs_e_2_in_axes3_x;
-    v->uhs_h_3_t_12 = uhs_h_3_t_12;
-    v->uhs_c_1 = uhs_c_1;
-    v->uhs_s_1 = uhs_s_1;
-    v->uhs_c_2 = uhs_c_2;
-    v->uhs_e_1_in_axes3_x = uhs_e_1_in_axes3_x;
-    v->uhs_e_1_in_axes3_y = uhs_e_1_in_axes3_y;
-    v->uhs_v_1_in_axes2_z = uhs_v_1_in_axes2_z;
-    v->uhs_v_1_t_2 = uhs_v_1_t_2;
-    v->inv_uhs_v_1_in_axes2_z = inv_uhs_v_1_in_axes2_z;
-    v->uhs_w_1_in_axes3_y = uhs_w_1_in_axes3_y;
-    v->inv_uhs_h_3_t_9 = inv_uhs_h_3_t_9;
-    v->uhs_w_2_in_axes3_y = uhs_w_2_in_axes3_y;
-    v->axis_z_uhs_axes3_x = axis_z_uhs_axes3_x;
-    v->axis_z_uhs_axes3_y = axis_z_uhs_axes3_y;
-    v->axis_z_uhs_axes3_z = axis_z_uhs_axes3_z;
-    v->uhs_e_1_in_axes3_z = uhs_e_1_in_axes3_z;
-    v->uhs_d_alpha_3_in_axes3_zy = uhs_d_alpha_3_in_axes3_zy;
-    v->uhs_d_Gamma_2_in_axes3_y = uhs_d_Gamma_2_in_axes3_y;
-    v->uhs_d_Gamma_1_in_axes3_y = uhs_d_Gamma_1_in_axes3_y;
-    v->uhs_d_c_in_axes3_xx = uhs_d_c_in_axes3_xx;
-    v->uhs_d_c_in_axes3_xy = uhs_d_c_in_axes3_xy;
-    v->uhs_d_c_in_axes3_xz = uhs_d_c_in_axes3_xz;
-    v->uhs_d_c_in_axes3_yz = uhs_d_c_in_axes3_yz;
+    /* (uhs-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real uhs_Q_t = uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y +
+        uhs_d_alpha_3_in_axes3_zy*m->uhs_h_3_in_spec3_y[i] +
+        uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y -
+        m->uhs_h_3_in_spec3_x[i]*(v->uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
+        v->uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y) + uhs_d_c_in_axes3_xx;
+    const real uhs_Q_t_2 = R(0.5)*uhs_Q_t;
+    const real uhs_Q_t_3 = m->uhs_d_G_in_axes3_zz[i] + uhs_d_c_in_axes3_xx;
+    const real uhs_Q_t_4 = R(0.5)*uhs_Q_t_3;
+    const real uhs_Q_t_5 = v->axis_z_uhs_axes3_x*uhs_d_c_in_axes3_yz +
+        v->axis_x_uhs_axes3_x*uhs_d_c_in_axes3_xy - v->axis_y_uhs_axes3_x*uhs_Q_t_2;
+    const real uhs_Q_t_6 = v->axis_z_uhs_axes3_y*uhs_d_c_in_axes3_yz +
+        v->axis_x_uhs_axes3_y*uhs_d_c_in_axes3_xy - v->axis_y_uhs_axes3_y*uhs_Q_t_2;
+    const real uhs_Q_t_7 = v->axis_z_uhs_axes3_z*uhs_d_c_in_axes3_yz +
+        v->axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xy - v->axis_y_uhs_axes3_z*uhs_Q_t_2;
+    const real uhs_Q_t_8 = v->axis_z_uhs_axes3_x*uhs_Q_t_4 -
+        v->axis_x_uhs_axes3_x*uhs_d_c_in_axes3_xz;
+    const real uhs_Q_t_9 = v->axis_z_uhs_axes3_y*uhs_Q_t_4 -
+        v->axis_x_uhs_axes3_y*uhs_d_c_in_axes3_xz;
+    const real uhs_Q_t_10 = v->axis_z_uhs_axes3_z*uhs_Q_t_4 -
+        v->axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xz;
+    const real uhs_Q_t_11 = v->axis_y_uhs_axes3_x*uhs_Q_t_5 - v->axis_z_uhs_axes3_x*uhs_Q_t_8;
+    v->uhs_Q_xx = -uhs_d_c_in_axes3_xx - 2*uhs_Q_t_11;
+    v->uhs_Q_xy = v->axis_z_uhs_axes3_x*uhs_Q_t_9 + v->axis_z_uhs_axes3_y*uhs_Q_t_8 -
+        v->axis_y_uhs_axes3_x*uhs_Q_t_6 - v->axis_y_uhs_axes3_y*uhs_Q_t_5;
+    v->uhs_Q_xz = v->axis_z_uhs_axes3_x*uhs_Q_t_10 + v->axis_z_uhs_axes3_z*uhs_Q_t_8 -
+        v->axis_y_uhs_axes3_x*uhs_Q_t_7 - v->axis_y_uhs_axes3_z*uhs_Q_t_5;
+    const real uhs_Q_t_12 = v->axis_y_uhs_axes3_y*uhs_Q_t_6 - v->axis_z_uhs_axes3_y*uhs_Q_t_9;
+    v->uhs_Q_yy = -uhs_d_c_in_axes3_xx - 2*uhs_Q_t_12;
+    v->uhs_Q_yz = v->axis_z_uhs_axes3_y*uhs_Q_t_10 + v->axis_z_uhs_axes3_z*uhs_Q_t_9 -
+        v->axis_y_uhs_axes3_y*uhs_Q_t_7 - v->axis_y_uhs_axes3_z*uhs_Q_t_6;
+    const real uhs_Q_t_13 = v->axis_y_uhs_axes3_z*uhs_Q_t_7 -
+        v->axis_z_uhs_axes3_z*uhs_Q_t_10;
+    v->uhs_Q_zz = -uhs_d_c_in_axes3_xx - 2*uhs_Q_t_13;
+    /* (M_ta) coupling block of M */
+    const real uhs_M_ta_t = -v->uhs_Q_xy*v->uhs_q_z;
+    const real uhs_M_ta_t_2 = v->uhs_Q_xz*v->uhs_q_y;
+    v->uhs_M_ta_t_3 = uhs_M_ta_t + uhs_M_ta_t_2;
+    v->uhs_M_ta_t_4 = v->uhs_Q_xx*v->uhs_q_z - v->uhs_Q_xz*v->uhs_q_x;
+    v->uhs_M_ta_t_5 = v->uhs_Q_xy*v->uhs_q_x - v->uhs_Q_xx*v->uhs_q_y;
+    v->uhs_M_ta_t_6 = v->uhs_Q_yz*v->uhs_q_y - v->uhs_Q_yy*v->uhs_q_z;
+    const real uhs_M_ta_t_7 = v->uhs_Q_yz*v->uhs_q_x;
+    v->uhs_M_ta_t_8 = uhs_M_ta_t + uhs_M_ta_t_7;
+    v->uhs_M_ta_t_9 = v->uhs_Q_yy*v->uhs_q_x - v->uhs_Q_xy*v->uhs_q_y;
+    v->uhs_M_ta_t_10 = v->uhs_Q_zz*v->uhs_q_y - v->uhs_Q_yz*v->uhs_q_z;
+    v->uhs_M_ta_t_11 = v->uhs_Q_xz*v->uhs_q_z - v->uhs_Q_zz*v->uhs_q_x;
+    v->uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2;
+    /* (M_aa) rotational block of M */
+    v->uhs_M_aa_t = v->uhs_M_ta_t_10*v->uhs_q_y - v->uhs_M_ta_t_6*v->uhs_q_z;
+    v->uhs_M_aa_t_2 = v->uhs_M_ta_t_11*v->uhs_q_y + v->uhs_M_ta_t_8*v->uhs_q_z;
+    v->uhs_M_aa_t_3 = v->uhs_M_ta_t_12*v->uhs_q_y - v->uhs_M_ta_t_9*v->uhs_q_z;
+    v->uhs_M_aa_t_4 = v->uhs_M_ta_t_4*v->uhs_q_z - v->uhs_M_ta_t_11*v->uhs_q_x;
+    v->uhs_M_aa_t_5 = v->uhs_M_ta_t_5*v->uhs_q_z - v->uhs_M_ta_t_12*v->uhs_q_x;
+    v->uhs_M_aa_t_6 = v->uhs_M_ta_t_9*v->uhs_q_x - v->uhs_M_ta_t_5*v->uhs_q_y;
 }
 
-INLINE void stage_uhs_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_uhs *v)
+INLINE void stage_uhs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_uhs *v)
 {
-    /* (uhs-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real uhs_S_x = t_x - m->uhs_base_point_x[i] + R_xy*m->uhs_platform_point_y[i] +
-        R_xz*m->uhs_platform_point_z[i] + R_xx*m->uhs_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real uhs_S_y = t_y - m->uhs_base_point_y[i] + R_yx*m->uhs_platform_point_x[i] +
-        R_yz*m->uhs_platform_point_z[i] + R_yy*m->uhs_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real uhs_S_z = t_z - m->uhs_base_point_z[i] + R_zx*m->uhs_platform_point_x[i] +
-        R_zy*m->uhs_platform_point_y[i] + R_zz*m->uhs_platform_point_z[i];
-    const real uhs_S_in_turn1_x = uhs_S_x*m->uhs_base_frame_xx[i] +
-        uhs_S_y*m->uhs_base_frame_yx[i] + uhs_S_z*m->uhs_base_frame_zx[i];
-    const real uhs_S_in_turn1_y = uhs_S_x*m->uhs_base_frame_xy[i] +
-        uhs_S_y*m->uhs_base_frame_yy[i] + uhs_S_z*m->uhs_base_frame_zy[i];
-    const real uhs_S_in_turn1_z = uhs_S_x*m->uhs_base_frame_xz[i] +
-        uhs_S_y*m->uhs_base_frame_yz[i] + uhs_S_z*m->uhs_base_frame_zz[i];
-    /* (uhs-rho2_1) squared amplitude */
-    const real uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x +
-        uhs_S_in_turn1_y*uhs_S_in_turn1_y;
-    /* (uhs-root_1) root, with the sign of the branch */
-    const real uhs_root_1 = m->uhs_branch_1[i]*root(uhs_rho2_1);
-    /* (uhs-q_1) displacement of joint 1 */
-    const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
-    /* (uhs-rho2_2) squared amplitude */
-    const real uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1;
-    /* (uhs-root_2) root, with the sign of the branch */
-    const real uhs_root_2 = m->uhs_branch_2[i]*root(uhs_rho2_2);
-    /* (uhs-q_2) displacement of joint 2 */
-    const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
-    /* (uhs-x_3) from the origin of joint 3 to the connection point */
-    const real uhs_x_3_in_axes2_x = uhs_root_2 - m->uhs_joint3_offset_x[i];
-    /* (uhs-q_3) displacement of joint 3 */
-    const real uhs_q_3_t = m->inv_uhs_joint3_pitch[i]*(m->uhs_platform_joint_offset_x[i] -
-        uhs_x_3_in_axes2_x);
-    v->uhs_S_in_turn1_x = uhs_S_in_turn1_x;
-    v->uhs_S_in_turn1_y = uhs_S_in_turn1_y;
-    v->uhs_S_in_turn1_z = uhs_S_in_turn1_z;
-    v->uhs_rho2_1 = uhs_rho2_1;
-    v->uhs_root_1 = uhs_root_1;
-    v->inv_uhs_rho2_1 = inv_uhs_rho2_1;
-    v->uhs_rho2_2 = uhs_rho2_2;
-    v->uhs_root_2 = uhs_root_2;
-    v->inv_uhs_rho2_2 = inv_uhs_rho2_2;
-    v->uhs_q_3_t = uhs_q_3_t;
+    /* (uhs-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real uhs_u_1_x = omega_y*v->uhs_S_dot_t_3 - omega_z*v->uhs_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real uhs_u_1_y = omega_z*v->uhs_S_dot_t - omega_x*v->uhs_S_dot_t_3;
+    const real uhs_u_1_z = omega_x*v->uhs_S_dot_t_2 - omega_y*v->uhs_S_dot_t;
+    const real uhs_u_1_in_axes3_x = v->axis_x_uhs_axes3_x*uhs_u_1_x +
+        v->axis_x_uhs_axes3_y*uhs_u_1_y + v->axis_x_uhs_axes3_z*uhs_u_1_z;
+    const real uhs_u_1_in_axes3_y = v->axis_y_uhs_axes3_x*uhs_u_1_x +
+        v->axis_y_uhs_axes3_y*uhs_u_1_y + v->axis_y_uhs_axes3_z*uhs_u_1_z;
+    const real uhs_u_1_in_axes3_z = v->axis_z_uhs_axes3_x*uhs_u_1_x +
+        v->axis_z_uhs_axes3_y*uhs_u_1_y + v->axis_z_uhs_axes3_z*uhs_u_1_z;
+    /* (uhs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - v->uhs_bias_in_axes3_x;
+    const real uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - v->uhs_bias_in_axes3_y;
+    const real uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - v->uhs_bias_in_axes3_z;
+    /* (uhs-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real uhs_qdd_1_o =
+        v->inv_uhs_v_1_in_axes2_z*(v->uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x -
+        v->uhs_h_3_t_12*uhs_rel_o_in_axes3_y);
+    /* (uhs-qdd_2_o) remainder of: acceleration of joint 2 */
+    const real uhs_qdd_2_o = v->inv_uhs_h_3_t_9*(uhs_qdd_1_o*v->uhs_v_1_t_2 -
+        v->uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y - v->uhs_h_3_t_12*uhs_rel_o_in_axes3_x);
+    /* (uhs-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real uhs_alpha_1_o_in_axes2_x = v->uhs_e_1_in_axes3_z*uhs_qdd_1_o;
+    const real uhs_alpha_1_o_in_axes2_y = -v->uhs_c_2*uhs_qdd_1_o;
+    /* (uhs-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real uhs_alpha_2_o_in_axes2_x = v->uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x;
+    const real uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - v->uhs_W_2_in_axes2_xz;
+    /* (uhs-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real uhs_B_2_o_in_axes2_xy = v->uhs_W_2_in_axes2_xy - uhs_qdd_2_o;
+    const real uhs_B_2_o_in_axes2_yx = v->uhs_W_2_in_axes2_xy + uhs_qdd_2_o;
+    const real uhs_B_2_o_in_axes2_zx = v->uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y;
+    const real uhs_B_2_o_in_axes2_zy = v->uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x;
+    /* (uhs-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real uhs_alpha_3_o_in_axes3_x = v->uhs_zeta_3_in_axes3_x +
+        v->uhs_e_2_in_axes3_x*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*v->uhs_h_3_t_12;
+    const real uhs_alpha_3_o_in_axes3_y = v->uhs_zeta_3_in_axes3_y -
+        uhs_alpha_2_o_in_axes2_y*v->uhs_e_2_in_axes3_x - v->uhs_h_3_t_12*uhs_qdd_2_o;
+    const real uhs_alpha_3_o_in_axes3_z = m->inv_uhs_joint3_pitch[i]*uhs_rel_o_in_axes3_z +
+        uhs_alpha_2_o_in_axes2_x;
+    /* (uhs-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real uhs_B_3_o_in_axes3_xy = v->uhs_W_2_in_axes3_xy - uhs_alpha_3_o_in_axes3_z;
+    const real uhs_B_3_o_in_axes3_xz = v->uhs_W_3_in_axes3_xz + uhs_alpha_3_o_in_axes3_y;
+    const real uhs_B_3_o_in_axes3_yx = v->uhs_W_2_in_axes3_xy + uhs_alpha_3_o_in_axes3_z;
+    const real uhs_B_3_o_in_axes3_yz = v->uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x;
+    const real uhs_B_3_o_in_axes3_zx = v->uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y;
+    const real uhs_B_3_o_in_axes3_zy = v->uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x;
+    /* (uhs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real uhs_acc_3_o_in_axes3_x = uhs_u_1_in_axes3_x - v->uhs_g_in_axes3_x;
+    const real uhs_acc_3_o_in_axes3_y = uhs_u_1_in_axes3_y - v->uhs_g_in_axes3_y;
+    const real uhs_acc_3_o_in_axes3_z = uhs_u_1_in_axes3_z - v->uhs_g_in_axes3_z;
+    /* (uhs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real uhs_mu_3_o_in_axes3_x = uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
+        uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_x[i] + v->uhs_mu_3_t_2 +
+        uhs_B_3_o_in_axes3_yx*m->uhs_J_3_in_spec3_xy[i] +
+        uhs_B_3_o_in_axes3_zy*m->uhs_Sigma_3_in_axes3_yy[i] -
+        uhs_B_3_o_in_axes3_yz*m->uhs_Sigma_3_in_axes3_zz[i] -
+        uhs_B_3_o_in_axes3_zx*m->uhs_J_3_in_spec3_yz[i];
+    const real uhs_mu_3_o_in_axes3_y = uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_x[i] -
+        uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_y[i] - v->uhs_mu_3_t_3 -
+        uhs_B_3_o_in_axes3_xy*m->uhs_J_3_in_spec3_xz[i] +
+        uhs_B_3_o_in_axes3_xz*m->uhs_Sigma_3_in_axes3_zz[i] +
+        uhs_B_3_o_in_axes3_zy*m->uhs_J_3_in_spec3_yz[i] -
+        uhs_B_3_o_in_axes3_zx*m->uhs_Sigma_3_in_axes3_xx[i];
+    const real uhs_mu_3_o_in_axes3_z = uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_y[i] -
+        uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_z[i] + v->uhs_mu_3_t_4 +
+        uhs_B_3_o_in_axes3_yx*m->uhs_Sigma_3_in_axes3_xx[i] -
+        uhs_B_3_o_in_axes3_xy*m->uhs_Sigma_3_in_axes3_yy[i] +
+        uhs_B_3_o_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] -
+        uhs_B_3_o_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i];
+    /* (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real uhs_mu_2_o_in_axes2_x = v->uhs_mu_2_t_11 - v->uhs_mu_2_t_8 +
+        m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_x +
+        uhs_B_2_o_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
+        uhs_B_2_o_in_axes2_zx*m->uhs_J_2_in_spec2_xz[i] +
+        uhs_B_2_o_in_axes2_zy*m->uhs_Sigma_2_in_axes2_yy[i];
+    const real uhs_mu_2_o_in_axes2_y = m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_y
+        - v->uhs_mu_2_t_12 - v->uhs_mu_2_t_9 + uhs_B_2_o_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i]
+        - uhs_B_2_o_in_axes2_zx*m->uhs_Sigma_2_in_axes2_xx[i] -
+        uhs_B_2_o_in_axes2_zy*m->uhs_J_2_in_spec2_xz[i];
+    const real uhs_mu_2_o_in_axes2_z = m->uhs_J_2_in_spec2_xy[i]*uhs_alpha_1_o_in_axes2_x -
+        v->uhs_mu_2_t_13 - v->uhs_mu_2_t_10 -
+        m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_o_in_axes2_y +
+        uhs_B_2_o_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] -
+        uhs_B_2_o_in_axes2_xy*m->uhs_Sigma_2_in_axes2_yy[i];
+    /* (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z;
+    const real uhs_N_2_o_in_axes2_y = uhs_mu_2_o_in_axes2_y -
+        v->uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y - v->uhs_h_3_t_12*uhs_mu_3_o_in_axes3_x;
+    const real uhs_N_2_o_in_axes2_z = uhs_mu_2_o_in_axes2_z +
+        v->uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_x - v->uhs_h_3_t_12*uhs_mu_3_o_in_axes3_y;
+    /* (uhs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real uhs_c_o_t = v->inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z;
+    const real uhs_c_o_t_2 =
+        v->inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*v->uhs_e_1_in_axes3_z -
+        uhs_N_2_o_in_axes2_y*v->uhs_c_2 + uhs_c_o_t*v->uhs_v_1_t_2);
+    const real uhs_c_o_in_axes3_x = v->uhs_c_t -
+        uhs_B_3_o_in_axes3_xy*m->uhs_h_3_in_spec3_z[i] -
+        uhs_B_3_o_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v->uhs_h_3_t_12 -
+        uhs_c_o_t_2*v->uhs_e_2_in_axes3_x;
+    const real uhs_c_o_in_axes3_y = v->uhs_c_t_2 -
+        uhs_B_3_o_in_axes3_yx*m->uhs_h_3_in_spec3_y[i] -
+        uhs_B_3_o_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v->uhs_e_2_in_axes3_x +
+        uhs_c_o_t_2*v->uhs_h_3_t_12;
+    const real uhs_c_o_in_axes3_z = v->uhs_c_t_3 -
+        uhs_B_3_o_in_axes3_zx*m->uhs_h_3_in_spec3_y[i] -
+        uhs_B_3_o_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
+        m->inv_uhs_joint3_pitch[i]*uhs_mu_3_o_in_axes3_z;
+    /* (uhs-U) velocity and gravity terms of the leg force */
+    v->uhs_U_x = -v->axis_z_uhs_axes3_x*uhs_c_o_in_axes3_z -
+        v->axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x - v->axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y;
+    v->uhs_U_y = -v->axis_z_uhs_axes3_y*uhs_c_o_in_axes3_z -
+        v->axis_x_uhs_axes3_y*uhs_c_o_in_axes3_x - v->axis_y_uhs_axes3_y*uhs_c_o_in_axes3_y;
+    v->uhs_U_z = -v->axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z -
+        v->axis_x_uhs_axes3_z*uhs_c_o_in_axes3_x - v->axis_y_uhs_axes3_z*uhs_c_o_in_axes3_y;
+    /* (Z_a) rotational part of Z */
+    v->uhs_Z_a_t = v->uhs_U_z*v->uhs_q_y - v->uhs_U_y*v->uhs_q_z;
+    v->uhs_Z_a_t_2 = v->uhs_U_x*v->uhs_q_z - v->uhs_U_z*v->uhs_q_x;
+    v->uhs_Z_a_t_3 = v->uhs_U_y*v->uhs_q_x - v->uhs_U_x*v->uhs_q_y;
 }
 
 INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
 {
-    /* (uhs-w_3) reciprocal vector 3 */
-    const real uhs_w_3_x = v->axis_z_uhs_axes3_x*m->inv_uhs_joint3_pitch[i];
-    const real uhs_w_3_y = v->axis_z_uhs_axes3_y*m->inv_uhs_joint3_pitch[i];
-    const real uhs_w_3_z = v->axis_z_uhs_axes3_z*m->inv_uhs_joint3_pitch[i];
-    /* (uhs-S_ddot) acceleration of the connection point */
-    const real uhs_S_ddot_t = v->uhs_c_3*v->uhs_e_1_in_axes3_z;
-    const real uhs_S_ddot_t_2 = v->uhs_s_1*v->uhs_s_3 - uhs_S_ddot_t*v->uhs_c_1;
-    const real uhs_S_ddot_t_3 = -v->uhs_c_1*v->uhs_s_3 - uhs_S_ddot_t*v->uhs_s_1;
-    const real axis_y_uhs_axes3_x = m->uhs_base_frame_xz[i]*v->uhs_e_1_in_axes3_y +
-        uhs_S_ddot_t_2*m->uhs_base_frame_xx[i] + uhs_S_ddot_t_3*m->uhs_base_frame_xy[i];
-    const real axis_y_uhs_axes3_y = m->uhs_base_frame_yz[i]*v->uhs_e_1_in_axes3_y +
-        uhs_S_ddot_t_2*m->uhs_base_frame_yx[i] + uhs_S_ddot_t_3*m->uhs_base_frame_yy[i];
-    const real axis_y_uhs_axes3_z = m->uhs_base_frame_zz[i]*v->uhs_e_1_in_axes3_y +
-        uhs_S_ddot_t_2*m->uhs_base_frame_zx[i] + uhs_S_ddot_t_3*m->uhs_base_frame_zy[i];
-    const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_y*v->axis_z_uhs_axes3_z -
-        axis_y_uhs_axes3_z*v->axis_z_uhs_axes3_y;
-    const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_z*v->axis_z_uhs_axes3_x -
-        axis_y_uhs_axes3_x*v->axis_z_uhs_axes3_z;
-    const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_x*v->axis_z_uhs_axes3_y -
-        axis_y_uhs_axes3_y*v->axis_z_uhs_axes3_x;
-    const real uhs_S_ddot_in_axes3_x = axis_x_uhs_axes3_x*v->uhs_S_ddot_x +
-        axis_x_uhs_axes3_y*v->uhs_S_ddot_y + axis_x_uhs_axes3_z*v->uhs_S_ddot_z;
-    const real uhs_S_ddot_in_axes3_y = axis_y_uhs_axes3_x*v->uhs_S_ddot_x +
-        axis_y_uhs_axes3_y*v->uhs_S_ddot_y + axis_y_uhs_axes3_z*v->uhs_S_ddot_z;
-    const real uhs_S_ddot_in_axes3_z = v->axis_z_uhs_axes3_x*v->uhs_S_ddot_x +
-        v->axis_z_uhs_axes3_y*v->uhs_S_ddot_y + v->axis_z_uhs_axes3_z*v->uhs_S_ddot_z;
-    /* (uhs-rel) acceleration of the connection point left to the joint accelerations */
-    const real uhs_rel_in_axes3_x = uhs_S_ddot_in_axes3_x - v->uhs_bias_in_axes3_x;
-    const real uhs_rel_in_axes3_y = uhs_S_ddot_in_axes3_y - v->uhs_bias_in_axes3_y;
-    const real uhs_rel_in_axes3_z = uhs_S_ddot_in_axes3_z - v->uhs_bias_in_axes3_z;
-    /* (uhs-qdd_1) acceleration of joint 1 */
-    const real uhs_qdd_1 = v->inv_uhs_v_1_in_axes2_z*(v->uhs_c_3*uhs_rel_in_axes3_x -
-        uhs_rel_in_axes3_y*v->uhs_s_3);
-    /* (uhs-qdd_2) acceleration of joint 2 */
-    const real uhs_qdd_2 = v->inv_uhs_root_2*(uhs_qdd_1*v->uhs_v_1_t_2 -
-        v->uhs_c_3*uhs_rel_in_axes3_y - uhs_rel_in_axes3_x*v->uhs_s_3);
     /* (uhs-alpha_1) angular acceleration of link 1 */
-    const real uhs_alpha_1_in_axes2_x = v->uhs_e_1_in_axes3_z*uhs_qdd_1;
-    const real uhs_alpha_1_in_axes2_y = -v->uhs_c_2*uhs_qdd_1;
+    const real uhs_alpha_1_in_axes2_x = v->uhs_e_1_in_axes3_z*v->uhs_qdd_1;
+    const real uhs_alpha_1_in_axes2_y = -v->uhs_c_2*v->uhs_qdd_1;
     /* (uhs-alpha_2) angular acceleration of link 2 */
     const real uhs_alpha_2_in_axes2_x = v->uhs_W_2_in_axes2_yz + uhs_alpha_1_in_axes2_x;
     const real uhs_alpha_2_in_axes2_y = uhs_alpha_1_in_axes2_y - v->uhs_W_2_in_axes2_xz;
     /* (uhs-B_2) acceleration tensor of link 2 */
-    const real uhs_B_2_in_axes2_xy = v->uhs_W_2_in_axes2_xy - uhs_qdd_2;
-    const real uhs_B_2_in_axes2_yx = v->uhs_W_2_in_axes2_xy + uhs_qdd_2;
+    const real uhs_B_2_in_axes2_xy = v->uhs_W_2_in_axes2_xy - v->uhs_qdd_2;
+    const real uhs_B_2_in_axes2_yx = v->uhs_W_2_in_axes2_xy + v->uhs_qdd_2;
     const real uhs_B_2_in_axes2_zx = v->uhs_W_2_in_axes2_xz - uhs_alpha_2_in_axes2_y;
     const real uhs_B_2_in_axes2_zy = v->uhs_W_2_in_axes2_yz + uhs_alpha_2_in_axes2_x;
     /* (uhs-alpha_3) angular acceleration of link 3 */
-    const real uhs_alpha_3_in_axes3_x = v->uhs_zeta_3_in_axes3_x + v->uhs_c_3*uhs_qdd_2 -
-        uhs_alpha_2_in_axes2_y*v->uhs_s_3;
+    const real uhs_alpha_3_in_axes3_x = v->uhs_zeta_3_in_axes3_x +
+        v->uhs_e_2_in_axes3_x*v->uhs_qdd_2 - uhs_alpha_2_in_axes2_y*v->uhs_h_3_t_12;
     const real uhs_alpha_3_in_axes3_y = v->uhs_zeta_3_in_axes3_y -
-        uhs_alpha_2_in_axes2_y*v->uhs_c_3 - uhs_qdd_2*v->uhs_s_3;
-    const real uhs_alpha_3_in_axes3_z = m->inv_uhs_joint3_pitch[i]*uhs_rel_in_axes3_z +
-        uhs_alpha_2_in_axes2_x;
+        uhs_alpha_2_in_axes2_y*v->uhs_e_2_in_axes3_x - v->uhs_h_3_t_12*v->uhs_qdd_2;
+    const real uhs_alpha_3_in_axes3_z = v->uhs_qdd_3 + uhs_alpha_2_in_axes2_x;
     /* (uhs-B_3) acceleration tensor of link 3 */
     const real uhs_B_3_in_axes3_xy = v->uhs_W_2_in_axes3_xy - uhs_alpha_3_in_axes3_z;
     const real uhs_B_3_in_axes3_xz = v->uhs_W_3_in_axes3_xz + uhs_alpha_3_in_axes3_y;
@@ -2189,109 +2178,70 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
     const real uhs_B_3_in_axes3_zx = v->uhs_W_3_in_axes3_xz - uhs_alpha_3_in_axes3_y;
     const real uhs_B_3_in_axes3_zy = v->uhs_W_3_in_axes3_yz + uhs_alpha_3_in_axes3_x;
     /* (uhs-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real uhs_acc_3_in_axes3_x = uhs_S_ddot_in_axes3_x - axis_x_uhs_axes3_x*m->gravity_x
-        - axis_x_uhs_axes3_y*m->gravity_y - axis_x_uhs_axes3_z*m->gravity_z;
-    const real uhs_acc_3_in_axes3_y = uhs_S_ddot_in_axes3_y - axis_y_uhs_axes3_x*m->gravity_x
-        - axis_y_uhs_axes3_y*m->gravity_y - axis_y_uhs_axes3_z*m->gravity_z;
-    const real uhs_acc_3_in_axes3_z = uhs_S_ddot_in_axes3_z -
-        v->axis_z_uhs_axes3_x*m->gravity_x - v->axis_z_uhs_axes3_y*m->gravity_y -
-        v->axis_z_uhs_axes3_z*m->gravity_z;
+    v->uhs_acc_3_in_axes3_x = v->uhs_S_ddot_in_axes3_x - v->uhs_g_in_axes3_x;
+    v->uhs_acc_3_in_axes3_y = v->uhs_S_ddot_in_axes3_y - v->uhs_g_in_axes3_y;
+    v->uhs_acc_3_in_axes3_z = v->uhs_S_ddot_in_axes3_z - v->uhs_g_in_axes3_z;
     /* (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-    const real uhs_mu_3_t = v->uhs_omega_3_in_axes3_z*v->uhs_omega_3_in_axes3_z;
-    const real uhs_mu_3_in_axes3_x = uhs_acc_3_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
-        uhs_acc_3_in_axes3_y*m->uhs_h_3_in_spec3_x[i] +
-        m->uhs_J_3_in_spec3_xz[i]*(v->uhs_W_2_t_2 - uhs_mu_3_t) +
+    const real uhs_mu_3_in_axes3_x = v->uhs_acc_3_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
+        v->uhs_acc_3_in_axes3_y*m->uhs_h_3_in_spec3_x[i] + v->uhs_mu_3_t_2 +
         uhs_B_3_in_axes3_yx*m->uhs_J_3_in_spec3_xy[i] +
         uhs_B_3_in_axes3_zy*m->uhs_Sigma_3_in_axes3_yy[i] -
         uhs_B_3_in_axes3_yz*m->uhs_Sigma_3_in_axes3_zz[i] -
         uhs_B_3_in_axes3_zx*m->uhs_J_3_in_spec3_yz[i];
-    const real uhs_mu_3_in_axes3_y = uhs_acc_3_in_axes3_x*m->uhs_h_3_in_spec3_x[i] -
-        uhs_acc_3_in_axes3_z*m->uhs_h_3_in_spec3_y[i] -
-        m->uhs_J_3_in_spec3_xy[i]*(v->uhs_W_2_t - uhs_mu_3_t) -
+    const real uhs_mu_3_in_axes3_y = v->uhs_acc_3_in_axes3_x*m->uhs_h_3_in_spec3_x[i] -
+        v->uhs_acc_3_in_axes3_z*m->uhs_h_3_in_spec3_y[i] - v->uhs_mu_3_t_3 -
         uhs_B_3_in_axes3_xy*m->uhs_J_3_in_spec3_xz[i] +
         uhs_B_3_in_axes3_xz*m->uhs_Sigma_3_in_axes3_zz[i] +
         uhs_B_3_in_axes3_zy*m->uhs_J_3_in_spec3_yz[i] -
         uhs_B_3_in_axes3_zx*m->uhs_Sigma_3_in_axes3_xx[i];
-    const real uhs_mu_3_in_axes3_z = uhs_acc_3_in_axes3_y*m->uhs_h_3_in_spec3_y[i] -
-        uhs_acc_3_in_axes3_x*m->uhs_h_3_in_spec3_z[i] +
-        m->uhs_J_3_in_spec3_yz[i]*(v->uhs_W_2_t - v->uhs_W_2_t_2) +
+    const real uhs_mu_3_in_axes3_z = v->uhs_acc_3_in_axes3_y*m->uhs_h_3_in_spec3_y[i] -
+        v->uhs_acc_3_in_axes3_x*m->uhs_h_3_in_spec3_z[i] + v->uhs_mu_3_t_4 +
         uhs_B_3_in_axes3_yx*m->uhs_Sigma_3_in_axes3_xx[i] -
         uhs_B_3_in_axes3_xy*m->uhs_Sigma_3_in_axes3_yy[i] +
         uhs_B_3_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] -
         uhs_B_3_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i];
     /* (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real uhs_mu_2_t_4 = v->uhs_omega_1_in_axes2_x*v->uhs_omega_1_in_axes2_x;
-    const real uhs_mu_2_t_5 = v->uhs_omega_1_in_axes2_y*v->uhs_omega_1_in_axes2_y;
-    const real uhs_mu_2_t_6 = v->uhs_qd_2*v->uhs_qd_2;
-    const real uhs_mu_2_t_7 = v->uhs_c_1*m->uhs_mu_2_t[i] + m->uhs_mu_2_t_2[i]*v->uhs_s_1;
-    const real uhs_g_in_axes2_x = v->uhs_c_2*uhs_mu_2_t_7 +
-        v->uhs_e_1_in_axes3_z*m->uhs_mu_2_t_3[i];
-    const real uhs_g_in_axes2_y = v->uhs_e_1_in_axes3_z*uhs_mu_2_t_7 -
-        v->uhs_c_2*m->uhs_mu_2_t_3[i];
-    const real uhs_mu_2_in_axes2_x = v->uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_z[i] +
-        uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_y[i] - m->uhs_J_2_in_spec2_yz[i]*(uhs_mu_2_t_5 -
-        uhs_mu_2_t_6) + m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_in_axes2_x +
+    const real uhs_mu_2_in_axes2_x = v->uhs_mu_2_t_11 - v->uhs_mu_2_t_8 +
+        m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_in_axes2_x +
         uhs_B_2_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
         uhs_B_2_in_axes2_zx*m->uhs_J_2_in_spec2_xz[i] +
         uhs_B_2_in_axes2_zy*m->uhs_Sigma_2_in_axes2_yy[i];
-    const real uhs_mu_2_in_axes2_y = v->uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_x[i] -
-        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_y[i] - m->uhs_J_2_in_spec2_xy[i]*(uhs_mu_2_t_4 -
-        uhs_mu_2_t_6) + m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_in_axes2_y +
-        uhs_B_2_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i] -
+    const real uhs_mu_2_in_axes2_y = m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_in_axes2_y -
+        v->uhs_mu_2_t_12 - v->uhs_mu_2_t_9 + uhs_B_2_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i] -
         uhs_B_2_in_axes2_zx*m->uhs_Sigma_2_in_axes2_xx[i] -
         uhs_B_2_in_axes2_zy*m->uhs_J_2_in_spec2_xz[i];
     const real uhs_mu_2_in_axes2_z = m->uhs_J_2_in_spec2_xy[i]*uhs_alpha_1_in_axes2_x -
-        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_z[i] - uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_x[i]
-        - m->uhs_J_2_in_spec2_xz[i]*(uhs_mu_2_t_4 - uhs_mu_2_t_5) -
-        m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_in_axes2_y +
-        uhs_B_2_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] -
+        v->uhs_mu_2_t_13 - v->uhs_mu_2_t_10 - m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_in_axes2_y
+        + uhs_B_2_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] -
         uhs_B_2_in_axes2_xy*m->uhs_Sigma_2_in_axes2_yy[i];
     /* (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real uhs_N_2_in_axes2_x = uhs_mu_2_in_axes2_x + uhs_mu_3_in_axes3_z;
-    const real uhs_N_2_in_axes2_y = uhs_mu_2_in_axes2_y - v->uhs_c_3*uhs_mu_3_in_axes3_y -
-        uhs_mu_3_in_axes3_x*v->uhs_s_3;
-    const real uhs_N_2_in_axes2_z = uhs_mu_2_in_axes2_z + v->uhs_c_3*uhs_mu_3_in_axes3_x -
-        uhs_mu_3_in_axes3_y*v->uhs_s_3;
+    const real uhs_N_2_in_axes2_y = uhs_mu_2_in_axes2_y -
+        v->uhs_e_2_in_axes3_x*uhs_mu_3_in_axes3_y - v->uhs_h_3_t_12*uhs_mu_3_in_axes3_x;
+    const real uhs_N_2_in_axes2_z = uhs_mu_2_in_axes2_z +
+        v->uhs_e_2_in_axes3_x*uhs_mu_3_in_axes3_x - v->uhs_h_3_t_12*uhs_mu_3_in_axes3_y;
     /* (uhs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real uhs_c_t = v->inv_uhs_root_2*uhs_N_2_in_axes2_z;
-    const real uhs_c_t_2 = v->inv_uhs_v_1_in_axes2_z*(uhs_N_2_in_axes2_x*v->uhs_e_1_in_axes3_z
-        - uhs_N_2_in_axes2_y*v->uhs_c_2 + uhs_c_t*v->uhs_v_1_t_2);
-    const real uhs_c_in_axes3_x = m->uhs_h_3_in_spec3_y[i]*(uhs_mu_3_t + v->uhs_W_2_t_2) -
-        uhs_B_3_in_axes3_xy*m->uhs_h_3_in_spec3_z[i] -
-        uhs_B_3_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_t*v->uhs_s_3 -
-        v->uhs_c_3*uhs_c_t_2;
-    const real uhs_c_in_axes3_y = m->uhs_h_3_in_spec3_z[i]*(uhs_mu_3_t + v->uhs_W_2_t) -
-        uhs_B_3_in_axes3_yx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + v->uhs_c_3*uhs_c_t +
-        uhs_c_t_2*v->uhs_s_3;
-    const real uhs_c_in_axes3_z = v->uhs_W_2_t_3*m->uhs_h_3_in_spec3_x[i] -
-        uhs_B_3_in_axes3_zx*m->uhs_h_3_in_spec3_y[i] -
+    const real uhs_c_t_4 = v->inv_uhs_h_3_t_9*uhs_N_2_in_axes2_z;
+    const real uhs_c_t_5 = v->inv_uhs_v_1_in_axes2_z*(uhs_N_2_in_axes2_x*v->uhs_e_1_in_axes3_z
+        - uhs_N_2_in_axes2_y*v->uhs_c_2 + uhs_c_t_4*v->uhs_v_1_t_2);
+    v->uhs_c_in_axes3_x = v->uhs_c_t - uhs_B_3_in_axes3_xy*m->uhs_h_3_in_spec3_z[i] -
+        uhs_B_3_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_t_4*v->uhs_h_3_t_12 -
+        uhs_c_t_5*v->uhs_e_2_in_axes3_x;
+    v->uhs_c_in_axes3_y = v->uhs_c_t_2 - uhs_B_3_in_axes3_yx*m->uhs_h_3_in_spec3_y[i] -
+        uhs_B_3_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + uhs_c_t_4*v->uhs_e_2_in_axes3_x +
+        uhs_c_t_5*v->uhs_h_3_t_12;
+    v->uhs_c_in_axes3_z = v->uhs_c_t_3 - uhs_B_3_in_axes3_zx*m->uhs_h_3_in_spec3_y[i] -
         uhs_B_3_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
         m->inv_uhs_joint3_pitch[i]*uhs_mu_3_in_axes3_z;
-    v->uhs_w_3_x = uhs_w_3_x;
-    v->uhs_w_3_y = uhs_w_3_y;
-    v->uhs_w_3_z = uhs_w_3_z;
-    v->axis_y_uhs_axes3_x = axis_y_uhs_axes3_x;
-    v->axis_y_uhs_axes3_y = axis_y_uhs_axes3_y;
-    v->axis_y_uhs_axes3_z = axis_y_uhs_axes3_z;
-    v->axis_x_uhs_axes3_x = axis_x_uhs_axes3_x;
-    v->axis_x_uhs_axes3_y = axis_x_uhs_axes3_y;
-    v->axis_x_uhs_axes3_z = axis_x_uhs_axes3_z;
-    v->uhs_acc_3_in_axes3_x = uhs_acc_3_in_axes3_x;
-    v->uhs_acc_3_in_axes3_y = uhs_acc_3_in_axes3_y;
-    v->uhs_acc_3_in_axes3_z = uhs_acc_3_in_axes3_z;
-    v->uhs_c_in_axes3_x = uhs_c_in_axes3_x;
-    v->uhs_c_in_axes3_y = uhs_c_in_axes3_y;
-    v->uhs_c_in_axes3_z = uhs_c_in_axes3_z;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2303,30 +2253,28 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
-    stage_V_X(w, k, V, v);
-    stage_M_dynamics(m, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
-    s[18*w + k] = v->Z_p_x;
-    s[19*w + k] = v->Z_p_y;
-    s[20*w + k] = v->Z_p_z;
-    s[21*w + k] = v->Z_q_x;
-    s[22*w + k] = v->Z_q_y;
-    s[23*w + k] = v->Z_q_z;
+    s[27*w + k] = v->Z_p_x;
+    s[28*w + k] = v->Z_p_y;
+    s[29*w + k] = v->Z_p_z;
+    s[30*w + k] = v->Z_q_x;
+    s[31*w + k] = v->Z_q_y;
+    s[32*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2335,320 +2283,50 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
     stage_uhs_V_X(m, w, i, j, V, &v);
-    stage_uhs_M_dynamics(m, w, i, j, X, &v);
-    /* (uhs-w_3) reciprocal vector 3 */
-    const real uhs_w_3_x = v.axis_z_uhs_axes3_x*m->inv_uhs_joint3_pitch[i];
-    const real uhs_w_3_y = v.axis_z_uhs_axes3_y*m->inv_uhs_joint3_pitch[i];
-    const real uhs_w_3_z = v.axis_z_uhs_axes3_z*m->inv_uhs_joint3_pitch[i];
-    /* (uhs-qd_1) rate of joint 1 */
-    const real uhs_qd_1 = v.inv_uhs_v_1_in_axes2_z*(v.uhs_c_1*v.uhs_qd_1_t_2 -
-        v.uhs_qd_1_t*v.uhs_s_1);
-    /* (uhs-qd_2) rate of joint 2 */
-    const real uhs_qd_2_t_2 = v.uhs_c_1*v.uhs_qd_1_t + v.uhs_qd_1_t_2*v.uhs_s_1;
-    const real uhs_qd_2 = v.inv_uhs_h_3_t_9*(v.uhs_e_1_in_axes3_z*uhs_qd_2_t_2 -
-        v.uhs_c_2*v.uhs_qd_2_t + uhs_qd_1*v.uhs_v_1_t_2);
-    /* (uhs-qd_3) rate of joint 3 */
-    const real uhs_qd_3 = m->inv_uhs_joint3_pitch[i]*(v.uhs_c_2*uhs_qd_2_t_2 +
-        v.uhs_e_1_in_axes3_z*v.uhs_qd_2_t);
-    /* (uhs-omega_1) angular velocity of link 1 */
-    const real uhs_omega_1_in_axes2_x = v.uhs_e_1_in_axes3_z*uhs_qd_1;
-    const real uhs_omega_1_in_axes2_y = -v.uhs_c_2*uhs_qd_1;
-    /* (uhs-omega_2) angular velocity of link 2 */
-    const real uhs_omega_2_in_axes3_x = v.uhs_e_2_in_axes3_x*uhs_qd_2 -
-        v.uhs_h_3_t_12*uhs_omega_1_in_axes2_y;
-    const real uhs_omega_2_in_axes3_y = -v.uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y -
-        v.uhs_h_3_t_12*uhs_qd_2;
-    /* (uhs-W_2) centripetal tensor of link 2 */
-    const real uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2;
-    const real uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2;
-    const real uhs_W_2_in_axes2_xy = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_y;
-    const real uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x;
-    const real uhs_W_2_t_2 = uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y;
-    const real uhs_W_2_in_axes3_xy = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_y;
-    const real uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2;
-    /* (uhs-omega_3) angular velocity of link 3 */
-    const real uhs_omega_3_in_axes3_z = uhs_qd_3 + uhs_omega_1_in_axes2_x;
-    /* (uhs-W_3) centripetal tensor of link 3 */
-    const real uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z;
-    const real uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z;
-    /* (uhs-u_1) centripetal acceleration of the connection point */
-    const real uhs_u_1_t = v.uhs_e_1_in_axes3_z*v.uhs_e_2_in_axes3_x;
-    const real uhs_u_1_t_2 = v.uhs_h_3_t_12*v.uhs_s_1 - v.uhs_c_1*uhs_u_1_t;
-    const real uhs_u_1_t_3 = -v.uhs_c_1*v.uhs_h_3_t_12 - v.uhs_s_1*uhs_u_1_t;
-    const real axis_y_uhs_axes3_x = m->uhs_base_frame_xz[i]*v.uhs_e_1_in_axes3_y +
-        m->uhs_base_frame_xx[i]*uhs_u_1_t_2 + m->uhs_base_frame_xy[i]*uhs_u_1_t_3;
-    const real axis_y_uhs_axes3_y = m->uhs_base_frame_yz[i]*v.uhs_e_1_in_axes3_y +
-        m->uhs_base_frame_yx[i]*uhs_u_1_t_2 + m->uhs_base_frame_yy[i]*uhs_u_1_t_3;
-    const real axis_y_uhs_axes3_z = m->uhs_base_frame_zz[i]*v.uhs_e_1_in_axes3_y +
-        m->uhs_base_frame_zx[i]*uhs_u_1_t_2 + m->uhs_base_frame_zy[i]*uhs_u_1_t_3;
-    const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_y*v.axis_z_uhs_axes3_z -
-        axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_y;
-    const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_x -
-        axis_y_uhs_axes3_x*v.axis_z_uhs_axes3_z;
-    const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_x*v.axis_z_uhs_axes3_y -
-        axis_y_uhs_axes3_y*v.axis_z_uhs_axes3_x;
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real uhs_u_1_x = omega_y*v.uhs_S_dot_t_3 - omega_z*v.uhs_S_dot_t_2;
-    const real omega_x = V[3*w + j];
-    const real uhs_u_1_y = omega_z*v.uhs_S_dot_t - omega_x*v.uhs_S_dot_t_3;
-    const real uhs_u_1_z = omega_x*v.uhs_S_dot_t_2 - omega_y*v.uhs_S_dot_t;
-    const real uhs_u_1_in_axes3_x = axis_x_uhs_axes3_x*uhs_u_1_x +
-        axis_x_uhs_axes3_y*uhs_u_1_y + axis_x_uhs_axes3_z*uhs_u_1_z;
-    const real uhs_u_1_in_axes3_y = axis_y_uhs_axes3_x*uhs_u_1_x +
-        axis_y_uhs_axes3_y*uhs_u_1_y + axis_y_uhs_axes3_z*uhs_u_1_z;
-    const real uhs_u_1_in_axes3_z = v.axis_z_uhs_axes3_x*uhs_u_1_x +
-        v.axis_z_uhs_axes3_y*uhs_u_1_y + v.axis_z_uhs_axes3_z*uhs_u_1_z;
-    /* (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    const real uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*v.uhs_h_3_t_12;
-    const real uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*v.uhs_e_2_in_axes3_x;
-    /* (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-    const real uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3;
-    const real uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3;
-    /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real uhs_beta_3_in_axes3_x = uhs_zeta_2_in_axes3_x + uhs_zeta_3_in_axes3_x;
-    const real uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y;
-    /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
-    const real uhs_bias_t_2 = m->uhs_bias_t[i]*uhs_qd_3;
-    const real uhs_bias_in_axes3_x = uhs_bias_t_2*uhs_omega_2_in_axes3_y +
-        m->uhs_joint3_offset_x[i]*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x +
-        uhs_zeta_2_in_axes3_y) + v.uhs_h_3_t_10*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y);
-    const real uhs_bias_in_axes3_y =
-        m->uhs_joint3_offset_x[i]*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
-        uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x +
-        v.uhs_h_3_t_10*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x);
-    const real uhs_bias_in_axes3_z = -uhs_W_2_t_3*v.uhs_h_3_t_10 -
-        uhs_W_2_t_3*m->uhs_joint3_offset_x[i];
-    /* (uhs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_bias_in_axes3_x;
-    const real uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_bias_in_axes3_y;
-    const real uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_bias_in_axes3_z;
-    /* (uhs-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real uhs_qdd_1_o =
-        v.inv_uhs_v_1_in_axes2_z*(v.uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x -
-        v.uhs_h_3_t_12*uhs_rel_o_in_axes3_y);
-    /* (uhs-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real uhs_qdd_2_o = v.inv_uhs_h_3_t_9*(uhs_qdd_1_o*v.uhs_v_1_t_2 -
-        v.uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y - v.uhs_h_3_t_12*uhs_rel_o_in_axes3_x);
-    /* (uhs-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real uhs_alpha_1_o_in_axes2_x = v.uhs_e_1_in_axes3_z*uhs_qdd_1_o;
-    const real uhs_alpha_1_o_in_axes2_y = -v.uhs_c_2*uhs_qdd_1_o;
-    /* (uhs-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real uhs_alpha_2_o_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x;
-    const real uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - uhs_W_2_in_axes2_xz;
-    /* (uhs-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real uhs_B_2_o_in_axes2_xy = uhs_W_2_in_axes2_xy - uhs_qdd_2_o;
-    const real uhs_B_2_o_in_axes2_yx = uhs_W_2_in_axes2_xy + uhs_qdd_2_o;
-    const real uhs_B_2_o_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y;
-    const real uhs_B_2_o_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x;
-    /* (uhs-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real uhs_alpha_3_o_in_axes3_x = uhs_zeta_3_in_axes3_x +
-        v.uhs_e_2_in_axes3_x*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*v.uhs_h_3_t_12;
-    const real uhs_alpha_3_o_in_axes3_y = uhs_zeta_3_in_axes3_y -
-        uhs_alpha_2_o_in_axes2_y*v.uhs_e_2_in_axes3_x - v.uhs_h_3_t_12*uhs_qdd_2_o;
-    const real uhs_alpha_3_o_in_axes3_z = m->inv_uhs_joint3_pitch[i]*uhs_rel_o_in_axes3_z +
-        uhs_alpha_2_o_in_axes2_x;
-    /* (uhs-B_3_o) remainder of the acceleration tensor of link 3 */
-    const real uhs_B_3_o_in_axes3_xy = uhs_W_2_in_axes3_xy - uhs_alpha_3_o_in_axes3_z;
-    const real uhs_B_3_o_in_axes3_xz = uhs_W_3_in_axes3_xz + uhs_alpha_3_o_in_axes3_y;
-    const real uhs_B_3_o_in_axes3_yx = uhs_W_2_in_axes3_xy + uhs_alpha_3_o_in_axes3_z;
-    const real uhs_B_3_o_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x;
-    const real uhs_B_3_o_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y;
-    const real uhs_B_3_o_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x;
-    /* (uhs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real uhs_acc_3_o_in_axes3_x = uhs_u_1_in_axes3_x - axis_x_uhs_axes3_x*m->gravity_x -
-        axis_x_uhs_axes3_y*m->gravity_y - axis_x_uhs_axes3_z*m->gravity_z;
-    const real uhs_acc_3_o_in_axes3_y = uhs_u_1_in_axes3_y - axis_y_uhs_axes3_x*m->gravity_x -
-        axis_y_uhs_axes3_y*m->gravity_y - axis_y_uhs_axes3_z*m->gravity_z;
-    const real uhs_acc_3_o_in_axes3_z = uhs_u_1_in_axes3_z - v.axis_z_uhs_axes3_x*m->gravity_x
-        - v.axis_z_uhs_axes3_y*m->gravity_y - v.axis_z_uhs_axes3_z*m->gravity_z;
-    /* (uhs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-       reference points */
-    const real uhs_mu_3_o_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z;
-    const real uhs_mu_3_o_in_axes3_x = uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
-        uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_x[i] +
-        m->uhs_J_3_in_spec3_xz[i]*(uhs_W_2_t_2 - uhs_mu_3_o_t) +
-        uhs_B_3_o_in_axes3_yx*m->uhs_J_3_in_spec3_xy[i] +
-        uhs_B_3_o_in_axes3_zy*m->uhs_Sigma_3_in_axes3_yy[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_Sigma_3_in_axes3_zz[i] -
-        uhs_B_3_o_in_axes3_zx*m->uhs_J_3_in_spec3_yz[i];
-    const real uhs_mu_3_o_in_axes3_y = uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_x[i] -
-        uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_y[i] - m->uhs_J_3_in_spec3_xy[i]*(uhs_W_2_t
-        - uhs_mu_3_o_t) - uhs_B_3_o_in_axes3_xy*m->uhs_J_3_in_spec3_xz[i] +
-        uhs_B_3_o_in_axes3_xz*m->uhs_Sigma_3_in_axes3_zz[i] +
-        uhs_B_3_o_in_axes3_zy*m->uhs_J_3_in_spec3_yz[i] -
-        uhs_B_3_o_in_axes3_zx*m->uhs_Sigma_3_in_axes3_xx[i];
-    const real uhs_mu_3_o_in_axes3_z = uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_y[i] -
-        uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_z[i] + m->uhs_J_3_in_spec3_yz[i]*(uhs_W_2_t
-        - uhs_W_2_t_2) + uhs_B_3_o_in_axes3_yx*m->uhs_Sigma_3_in_axes3_xx[i] -
-        uhs_B_3_o_in_axes3_xy*m->uhs_Sigma_3_in_axes3_yy[i] +
-        uhs_B_3_o_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i];
-    /* (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real uhs_mu_2_o_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x;
-    const real uhs_mu_2_o_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y;
-    const real uhs_mu_2_o_t_3 = uhs_qd_2*uhs_qd_2;
-    const real uhs_mu_2_o_t_4 = v.uhs_c_1*m->uhs_mu_2_t[i] + m->uhs_mu_2_t_2[i]*v.uhs_s_1;
-    const real uhs_g_in_axes2_z = v.uhs_c_1*m->uhs_mu_2_t_2[i] - m->uhs_mu_2_t[i]*v.uhs_s_1;
-    const real uhs_g_in_axes2_x = v.uhs_c_2*uhs_mu_2_o_t_4 +
-        v.uhs_e_1_in_axes3_z*m->uhs_mu_2_t_3[i];
-    const real uhs_g_in_axes2_y = v.uhs_e_1_in_axes3_z*uhs_mu_2_o_t_4 -
-        v.uhs_c_2*m->uhs_mu_2_t_3[i];
-    const real uhs_mu_2_o_in_axes2_x = uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_z[i] +
-        uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_y[i] - m->uhs_J_2_in_spec2_yz[i]*(uhs_mu_2_o_t_2
-        - uhs_mu_2_o_t_3) + m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_x +
-        uhs_B_2_o_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
-        uhs_B_2_o_in_axes2_zx*m->uhs_J_2_in_spec2_xz[i] +
-        uhs_B_2_o_in_axes2_zy*m->uhs_Sigma_2_in_axes2_yy[i];
-    const real uhs_mu_2_o_in_axes2_y = uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_x[i] -
-        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_y[i] - m->uhs_J_2_in_spec2_xy[i]*(uhs_mu_2_o_t -
-        uhs_mu_2_o_t_3) + m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_y +
-        uhs_B_2_o_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i] -
-        uhs_B_2_o_in_axes2_zx*m->uhs_Sigma_2_in_axes2_xx[i] -
-        uhs_B_2_o_in_axes2_zy*m->uhs_J_2_in_spec2_xz[i];
-    const real uhs_mu_2_o_in_axes2_z = m->uhs_J_2_in_spec2_xy[i]*uhs_alpha_1_o_in_axes2_x -
-        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_z[i] - uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_x[i]
-        - m->uhs_J_2_in_spec2_xz[i]*(uhs_mu_2_o_t - uhs_mu_2_o_t_2) -
-        m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_o_in_axes2_y +
-        uhs_B_2_o_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] -
-        uhs_B_2_o_in_axes2_xy*m->uhs_Sigma_2_in_axes2_yy[i];
-    /* (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-       connection point left out */
-    const real uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z;
-    const real uhs_N_2_o_in_axes2_y = uhs_mu_2_o_in_axes2_y -
-        v.uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y - v.uhs_h_3_t_12*uhs_mu_3_o_in_axes3_x;
-    const real uhs_N_2_o_in_axes2_z = uhs_mu_2_o_in_axes2_z +
-        v.uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_x - v.uhs_h_3_t_12*uhs_mu_3_o_in_axes3_y;
-    /* (uhs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real uhs_c_o_t = v.inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z;
-    const real uhs_c_o_t_2 =
-        v.inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*v.uhs_e_1_in_axes3_z -
-        uhs_N_2_o_in_axes2_y*v.uhs_c_2 + uhs_c_o_t*v.uhs_v_1_t_2);
-    const real uhs_c_o_in_axes3_x = m->uhs_h_3_in_spec3_y[i]*(uhs_mu_3_o_t + uhs_W_2_t_2) -
-        uhs_B_3_o_in_axes3_xy*m->uhs_h_3_in_spec3_z[i] -
-        uhs_B_3_o_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v.uhs_h_3_t_12 -
-        uhs_c_o_t_2*v.uhs_e_2_in_axes3_x;
-    const real uhs_c_o_in_axes3_y = m->uhs_h_3_in_spec3_z[i]*(uhs_mu_3_o_t + uhs_W_2_t) -
-        uhs_B_3_o_in_axes3_yx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v.uhs_e_2_in_axes3_x +
-        uhs_c_o_t_2*v.uhs_h_3_t_12;
-    const real uhs_c_o_in_axes3_z = uhs_W_2_t_3*m->uhs_h_3_in_spec3_x[i] -
-        uhs_B_3_o_in_axes3_zx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_o_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
-        m->inv_uhs_joint3_pitch[i]*uhs_mu_3_o_in_axes3_z;
-    /* (uhs-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real uhs_Q_t = v.uhs_d_Gamma_1_in_axes3_y*v.uhs_w_1_in_axes3_y +
-        v.uhs_d_alpha_3_in_axes3_zy*m->uhs_h_3_in_spec3_y[i] +
-        v.uhs_d_Gamma_2_in_axes3_y*v.uhs_w_2_in_axes3_y -
-        m->uhs_h_3_in_spec3_x[i]*(v.uhs_e_1_in_axes3_x*v.uhs_w_1_in_axes3_y +
-        v.uhs_e_2_in_axes3_x*v.uhs_w_2_in_axes3_y) + v.uhs_d_c_in_axes3_xx;
-    const real uhs_Q_t_2 = R(0.5)*uhs_Q_t;
-    const real uhs_Q_t_3 = m->uhs_d_G_in_axes3_zz[i] + v.uhs_d_c_in_axes3_xx;
-    const real uhs_Q_t_4 = R(0.5)*uhs_Q_t_3;
-    const real uhs_Q_t_5 = v.axis_z_uhs_axes3_x*v.uhs_d_c_in_axes3_yz +
-        axis_x_uhs_axes3_x*v.uhs_d_c_in_axes3_xy - axis_y_uhs_axes3_x*uhs_Q_t_2;
-    const real uhs_Q_t_6 = v.axis_z_uhs_axes3_y*v.uhs_d_c_in_axes3_yz +
-        axis_x_uhs_axes3_y*v.uhs_d_c_in_axes3_xy - axis_y_uhs_axes3_y*uhs_Q_t_2;
-    const real uhs_Q_t_7 = v.axis_z_uhs_axes3_z*v.uhs_d_c_in_axes3_yz +
-        axis_x_uhs_axes3_z*v.uhs_d_c_in_axes3_xy - axis_y_uhs_axes3_z*uhs_Q_t_2;
-    const real uhs_Q_t_8 = v.axis_z_uhs_axes3_x*uhs_Q_t_4 -
-        axis_x_uhs_axes3_x*v.uhs_d_c_in_axes3_xz;
-    const real uhs_Q_t_9 = v.axis_z_uhs_axes3_y*uhs_Q_t_4 -
-        axis_x_uhs_axes3_y*v.uhs_d_c_in_axes3_xz;
-    const real uhs_Q_t_10 = v.axis_z_uhs_axes3_z*uhs_Q_t_4 -
-        axis_x_uhs_axes3_z*v.uhs_d_c_in_axes3_xz;
-    const real uhs_Q_t_11 = axis_y_uhs_axes3_x*uhs_Q_t_5 - v.axis_z_uhs_axes3_x*uhs_Q_t_8;
-    const real uhs_Q_xx = -v.uhs_d_c_in_axes3_xx - 2*uhs_Q_t_11;
-    const real uhs_Q_xy = v.axis_z_uhs_axes3_x*uhs_Q_t_9 + v.axis_z_uhs_axes3_y*uhs_Q_t_8 -
-        axis_y_uhs_axes3_x*uhs_Q_t_6 - axis_y_uhs_axes3_y*uhs_Q_t_5;
-    const real uhs_Q_xz = v.axis_z_uhs_axes3_x*uhs_Q_t_10 + v.axis_z_uhs_axes3_z*uhs_Q_t_8 -
-        axis_y_uhs_axes3_x*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_5;
-    const real uhs_Q_t_12 = axis_y_uhs_axes3_y*uhs_Q_t_6 - v.axis_z_uhs_axes3_y*uhs_Q_t_9;
-    const real uhs_Q_yy = -v.uhs_d_c_in_axes3_xx - 2*uhs_Q_t_12;
-    const real uhs_Q_yz = v.axis_z_uhs_axes3_y*uhs_Q_t_10 + v.axis_z_uhs_axes3_z*uhs_Q_t_9 -
-        axis_y_uhs_axes3_y*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_6;
-    const real uhs_Q_t_13 = axis_y_uhs_axes3_z*uhs_Q_t_7 - v.axis_z_uhs_axes3_z*uhs_Q_t_10;
-    const real uhs_Q_zz = -v.uhs_d_c_in_axes3_xx - 2*uhs_Q_t_13;
-    /* (uhs-U) velocity and gravity terms of the leg force */
-    const real uhs_U_x = -v.axis_z_uhs_axes3_x*uhs_c_o_in_axes3_z -
-        axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y;
-    const real uhs_U_y = -v.axis_z_uhs_axes3_y*uhs_c_o_in_axes3_z -
-        axis_x_uhs_axes3_y*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_y*uhs_c_o_in_axes3_y;
-    const real uhs_U_z = -v.axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z -
-        axis_x_uhs_axes3_z*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_z*uhs_c_o_in_axes3_y;
-    /* (M_ta) coupling block of M */
-    const real uhs_M_ta_t = -uhs_Q_xy*v.uhs_q_z;
-    const real uhs_M_ta_t_2 = uhs_Q_xz*v.uhs_q_y;
-    const real uhs_M_ta_t_3 = uhs_M_ta_t + uhs_M_ta_t_2;
-    const real uhs_M_ta_t_4 = uhs_Q_xx*v.uhs_q_z - uhs_Q_xz*v.uhs_q_x;
-    const real uhs_M_ta_t_5 = uhs_Q_xy*v.uhs_q_x - uhs_Q_xx*v.uhs_q_y;
-    const real uhs_M_ta_t_6 = uhs_Q_yz*v.uhs_q_y - uhs_Q_yy*v.uhs_q_z;
-    const real uhs_M_ta_t_7 = uhs_Q_yz*v.uhs_q_x;
-    const real uhs_M_ta_t_8 = uhs_M_ta_t + uhs_M_ta_t_7;
-    const real uhs_M_ta_t_9 = uhs_Q_yy*v.uhs_q_x - uhs_Q_xy*v.uhs_q_y;
-    const real uhs_M_ta_t_10 = uhs_Q_zz*v.uhs_q_y - uhs_Q_yz*v.uhs_q_z;
-    const real uhs_M_ta_t_11 = uhs_Q_xz*v.uhs_q_z - uhs_Q_zz*v.uhs_q_x;
-    const real uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2;
-    /* (M_aa) rotational block of M */
-    const real uhs_M_aa_t = uhs_M_ta_t_10*v.uhs_q_y - uhs_M_ta_t_6*v.uhs_q_z;
-    const real uhs_M_aa_t_2 = uhs_M_ta_t_11*v.uhs_q_y + uhs_M_ta_t_8*v.uhs_q_z;
-    const real uhs_M_aa_t_3 = uhs_M_ta_t_12*v.uhs_q_y - uhs_M_ta_t_9*v.uhs_q_z;
-    const real uhs_M_aa_t_4 = uhs_M_ta_t_4*v.uhs_q_z - uhs_M_ta_t_11*v.uhs_q_x;
-    const real uhs_M_aa_t_5 = uhs_M_ta_t_5*v.uhs_q_z - uhs_M_ta_t_12*v.uhs_q_x;
-    const real uhs_M_aa_t_6 = uhs_M_ta_t_9*v.uhs_q_x - uhs_M_ta_t_5*v.uhs_q_y;
-    /* (Z_a) rotational part of Z */
-    const real uhs_Z_a_t = uhs_U_z*v.uhs_q_y - uhs_U_y*v.uhs_q_z;
-    const real uhs_Z_a_t_2 = uhs_U_x*v.uhs_q_z - uhs_U_z*v.uhs_q_x;
-    const real uhs_Z_a_t_3 = uhs_U_y*v.uhs_q_x - uhs_U_x*v.uhs_q_y;
-    /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
-    const real uhs_H_a_3_x = v.uhs_q_y*uhs_w_3_z - v.uhs_q_z*uhs_w_3_y;
-    const real uhs_H_a_3_y = v.uhs_q_z*uhs_w_3_x - v.uhs_q_x*uhs_w_3_z;
-    const real uhs_H_a_3_z = v.uhs_q_x*uhs_w_3_y - v.uhs_q_y*uhs_w_3_x;
+    stage_uhs_M_dynamics(m, i, &v);
+    stage_uhs_Z_dynamics(m, w, i, j, V, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, uhs_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, uhs_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, uhs_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, uhs_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, uhs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, uhs_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, uhs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, uhs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, uhs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, uhs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, uhs_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, uhs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, uhs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, uhs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, uhs_M_ta_t_12);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, uhs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, uhs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, uhs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, uhs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, uhs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, uhs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.uhs_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.uhs_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.uhs_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.uhs_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.uhs_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.uhs_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.uhs_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.uhs_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.uhs_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.uhs_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.uhs_M_ta_t_8);  /* M_ta_t */
+    gather(&terms[11*count + k], add, v.uhs_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.uhs_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.uhs_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.uhs_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.uhs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.uhs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.uhs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.uhs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.uhs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.uhs_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, uhs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, uhs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, uhs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[24*count + k], add, uhs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, uhs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, uhs_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (uhs-w_3) */
-    o[0*count + k] = uhs_w_3_x;
-    o[1*count + k] = uhs_w_3_y;
-    o[2*count + k] = uhs_w_3_z;
-    /* (uhs-H_a_3) */
-    o[3*count + k] = uhs_H_a_3_x;
-    o[4*count + k] = uhs_H_a_3_y;
-    o[5*count + k] = uhs_H_a_3_z;
-    o[7*count + k] = (uhs_w_3_x + (uhs_w_3_y + uhs_w_3_z)) + (uhs_H_a_3_x + (uhs_H_a_3_y +
-        uhs_H_a_3_z));
+    gather(&terms[21*count + k], add, v.uhs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, v.uhs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, v.uhs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[24*count + k], add, v.uhs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, v.uhs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, v.uhs_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (uhs-w_3) reciprocal vector 3 */
+    o[0*count + k] = v.uhs_w_3_x;
+    o[1*count + k] = v.uhs_w_3_y;
+    o[2*count + k] = v.uhs_w_3_z;
+    /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.uhs_H_a_3_x;
+    o[4*count + k] = v.uhs_H_a_3_y;
+    o[5*count + k] = v.uhs_H_a_3_z;
+    o[7*count + k] = (v.uhs_w_3_x + (v.uhs_w_3_y + v.uhs_w_3_z)) + (v.uhs_H_a_3_x +
+        (v.uhs_H_a_3_y + v.uhs_H_a_3_z));
     o[6*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
         UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
         UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
@@ -2656,7 +2334,7 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void dynamics_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2669,7 +2347,7 @@ INLINE void dynamics_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2680,58 +2358,58 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
-    const real Z_p_x = s[18*w + k];
+    const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[21*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
+    const real Z_p_y = s[28*w + k];
     const real Z_t_y_of_legs = sums[22*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
+    const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[23*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
-    const real Z_q_x = s[21*w + k];
+    const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
-    const real Z_q_y = s[22*w + k];
+    const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
-    const real Z_q_z = s[23*w + k];
+    const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2793,9 +2471,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
-    real s[24] = {0}, sums[27] = {0};
+    real s[33] = {0}, sums[27] = {0};
     real terms_uhs[27*LEGS(LEGS_OF_uhs)] = {0}, o_uhs[8*LEGS(LEGS_OF_uhs)] = {0};
     values v;
     dynamics_before(m, 1, 0, X, &v, s, t);
@@ -2813,9 +2491,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[27*LANES];
+    real s[33*LANES], sums[27*LANES];
     real o_uhs[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2838,7 +2516,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 
 /* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2850,21 +2528,16 @@ INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, value
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
-{
-    stage_M_dynamics(m, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2872,112 +2545,44 @@ INLINE void M_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
-    stage_uhs_M_dynamics(m, w, i, j, X, &v);
-    /* (uhs-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real uhs_Q_t = v.uhs_e_1_in_axes3_z*v.uhs_e_2_in_axes3_x;
-    const real uhs_Q_t_2 = v.uhs_h_3_t_12*v.uhs_s_1 - uhs_Q_t*v.uhs_c_1;
-    const real uhs_Q_t_3 = -v.uhs_c_1*v.uhs_h_3_t_12 - uhs_Q_t*v.uhs_s_1;
-    const real axis_y_uhs_axes3_x = m->uhs_base_frame_xz[i]*v.uhs_e_1_in_axes3_y +
-        uhs_Q_t_2*m->uhs_base_frame_xx[i] + uhs_Q_t_3*m->uhs_base_frame_xy[i];
-    const real axis_y_uhs_axes3_y = m->uhs_base_frame_yz[i]*v.uhs_e_1_in_axes3_y +
-        uhs_Q_t_2*m->uhs_base_frame_yx[i] + uhs_Q_t_3*m->uhs_base_frame_yy[i];
-    const real axis_y_uhs_axes3_z = m->uhs_base_frame_zz[i]*v.uhs_e_1_in_axes3_y +
-        uhs_Q_t_2*m->uhs_base_frame_zx[i] + uhs_Q_t_3*m->uhs_base_frame_zy[i];
-    const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_y*v.axis_z_uhs_axes3_z -
-        axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_y;
-    const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_x -
-        axis_y_uhs_axes3_x*v.axis_z_uhs_axes3_z;
-    const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_x*v.axis_z_uhs_axes3_y -
-        axis_y_uhs_axes3_y*v.axis_z_uhs_axes3_x;
-    const real uhs_Q_t_4 = v.uhs_d_Gamma_1_in_axes3_y*v.uhs_w_1_in_axes3_y +
-        v.uhs_d_alpha_3_in_axes3_zy*m->uhs_h_3_in_spec3_y[i] +
-        v.uhs_d_Gamma_2_in_axes3_y*v.uhs_w_2_in_axes3_y -
-        m->uhs_h_3_in_spec3_x[i]*(v.uhs_e_1_in_axes3_x*v.uhs_w_1_in_axes3_y +
-        v.uhs_e_2_in_axes3_x*v.uhs_w_2_in_axes3_y) + v.uhs_d_c_in_axes3_xx;
-    const real uhs_Q_t_5 = R(0.5)*uhs_Q_t_4;
-    const real uhs_Q_t_6 = m->uhs_d_G_in_axes3_zz[i] + v.uhs_d_c_in_axes3_xx;
-    const real uhs_Q_t_7 = R(0.5)*uhs_Q_t_6;
-    const real uhs_Q_t_8 = v.axis_z_uhs_axes3_x*v.uhs_d_c_in_axes3_yz +
-        axis_x_uhs_axes3_x*v.uhs_d_c_in_axes3_xy - axis_y_uhs_axes3_x*uhs_Q_t_5;
-    const real uhs_Q_t_9 = v.axis_z_uhs_axes3_y*v.uhs_d_c_in_axes3_yz +
-        axis_x_uhs_axes3_y*v.uhs_d_c_in_axes3_xy - axis_y_uhs_axes3_y*uhs_Q_t_5;
-    const real uhs_Q_t_10 = v.axis_z_uhs_axes3_z*v.uhs_d_c_in_axes3_yz +
-        axis_x_uhs_axes3_z*v.uhs_d_c_in_axes3_xy - axis_y_uhs_axes3_z*uhs_Q_t_5;
-    const real uhs_Q_t_11 = v.axis_z_uhs_axes3_x*uhs_Q_t_7 -
-        axis_x_uhs_axes3_x*v.uhs_d_c_in_axes3_xz;
-    const real uhs_Q_t_12 = v.axis_z_uhs_axes3_y*uhs_Q_t_7 -
-        axis_x_uhs_axes3_y*v.uhs_d_c_in_axes3_xz;
-    const real uhs_Q_t_13 = v.axis_z_uhs_axes3_z*uhs_Q_t_7 -
-        axis_x_uhs_axes3_z*v.uhs_d_c_in_axes3_xz;
-    const real uhs_Q_t_14 = axis_y_uhs_axes3_x*uhs_Q_t_8 - v.axis_z_uhs_axes3_x*uhs_Q_t_11;
-    const real uhs_Q_xx = -v.uhs_d_c_in_axes3_xx - 2*uhs_Q_t_14;
-    const real uhs_Q_xy = v.axis_z_uhs_axes3_x*uhs_Q_t_12 + v.axis_z_uhs_axes3_y*uhs_Q_t_11 -
-        axis_y_uhs_axes3_x*uhs_Q_t_9 - axis_y_uhs_axes3_y*uhs_Q_t_8;
-    const real uhs_Q_xz = v.axis_z_uhs_axes3_x*uhs_Q_t_13 + v.axis_z_uhs_axes3_z*uhs_Q_t_11 -
-        axis_y_uhs_axes3_x*uhs_Q_t_10 - axis_y_uhs_axes3_z*uhs_Q_t_8;
-    const real uhs_Q_t_15 = axis_y_uhs_axes3_y*uhs_Q_t_9 - v.axis_z_uhs_axes3_y*uhs_Q_t_12;
-    const real uhs_Q_yy = -v.uhs_d_c_in_axes3_xx - 2*uhs_Q_t_15;
-    const real uhs_Q_yz = v.axis_z_uhs_axes3_y*uhs_Q_t_13 + v.axis_z_uhs_axes3_z*uhs_Q_t_12 -
-        axis_y_uhs_axes3_y*uhs_Q_t_10 - axis_y_uhs_axes3_z*uhs_Q_t_9;
-    const real uhs_Q_t_16 = axis_y_uhs_axes3_z*uhs_Q_t_10 - v.axis_z_uhs_axes3_z*uhs_Q_t_13;
-    const real uhs_Q_zz = -v.uhs_d_c_in_axes3_xx - 2*uhs_Q_t_16;
-    /* (M_ta) coupling block of M */
-    const real uhs_M_ta_t = -uhs_Q_xy*v.uhs_q_z;
-    const real uhs_M_ta_t_2 = uhs_Q_xz*v.uhs_q_y;
-    const real uhs_M_ta_t_3 = uhs_M_ta_t + uhs_M_ta_t_2;
-    const real uhs_M_ta_t_4 = uhs_Q_xx*v.uhs_q_z - uhs_Q_xz*v.uhs_q_x;
-    const real uhs_M_ta_t_5 = uhs_Q_xy*v.uhs_q_x - uhs_Q_xx*v.uhs_q_y;
-    const real uhs_M_ta_t_6 = uhs_Q_yz*v.uhs_q_y - uhs_Q_yy*v.uhs_q_z;
-    const real uhs_M_ta_t_7 = uhs_Q_yz*v.uhs_q_x;
-    const real uhs_M_ta_t_8 = uhs_M_ta_t + uhs_M_ta_t_7;
-    const real uhs_M_ta_t_9 = uhs_Q_yy*v.uhs_q_x - uhs_Q_xy*v.uhs_q_y;
-    const real uhs_M_ta_t_10 = uhs_Q_zz*v.uhs_q_y - uhs_Q_yz*v.uhs_q_z;
-    const real uhs_M_ta_t_11 = uhs_Q_xz*v.uhs_q_z - uhs_Q_zz*v.uhs_q_x;
-    const real uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2;
-    /* (M_aa) rotational block of M */
-    const real uhs_M_aa_t = uhs_M_ta_t_10*v.uhs_q_y - uhs_M_ta_t_6*v.uhs_q_z;
-    const real uhs_M_aa_t_2 = uhs_M_ta_t_11*v.uhs_q_y + uhs_M_ta_t_8*v.uhs_q_z;
-    const real uhs_M_aa_t_3 = uhs_M_ta_t_12*v.uhs_q_y - uhs_M_ta_t_9*v.uhs_q_z;
-    const real uhs_M_aa_t_4 = uhs_M_ta_t_4*v.uhs_q_z - uhs_M_ta_t_11*v.uhs_q_x;
-    const real uhs_M_aa_t_5 = uhs_M_ta_t_5*v.uhs_q_z - uhs_M_ta_t_12*v.uhs_q_x;
-    const real uhs_M_aa_t_6 = uhs_M_ta_t_9*v.uhs_q_x - uhs_M_ta_t_5*v.uhs_q_y;
+    stage_uhs_M_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, uhs_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, uhs_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, uhs_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, uhs_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, uhs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, uhs_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, uhs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, uhs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, uhs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, uhs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, uhs_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, uhs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, uhs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, uhs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, uhs_M_ta_t_12);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, uhs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, uhs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, uhs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, uhs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, uhs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, uhs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.uhs_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.uhs_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.uhs_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.uhs_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.uhs_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.uhs_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.uhs_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.uhs_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.uhs_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.uhs_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.uhs_M_ta_t_8);  /* M_ta_t */
+    gather(&terms[11*count + k], add, v.uhs_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.uhs_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.uhs_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.uhs_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.uhs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.uhs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.uhs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.uhs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.uhs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.uhs_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
         UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
         UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
         UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
-INLINE void M_place_uhs(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_uhs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2988,37 +2593,37 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -3072,9 +2677,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[18] = {0}, sums[21] = {0};
+    real s[27] = {0}, sums[21] = {0};
     real terms_uhs[21*LEGS(LEGS_OF_uhs)] = {0}, o_uhs[LEGS(LEGS_OF_uhs)] = {0};
     values v;
     M_before(m, 1, 0, X, &v, s, t);
@@ -3087,18 +2692,17 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_uhs + n*LEGS(LEGS_OF_uhs), LEGS_OF_uhs);
     }
-    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
-    real s[18*LANES], sums[21*LANES];
+    real s[27*LANES], sums[21*LANES];
     real o_uhs[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         M_before(m, LANES, k, X, &v, s, t);
-        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
@@ -3116,7 +2720,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 
 /* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3133,14 +2737,13 @@ INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, value
 
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[9*w + k] = v->Z_p_x;
-    s[10*w + k] = v->Z_p_y;
-    s[11*w + k] = v->Z_p_z;
-    s[12*w + k] = v->Z_q_x;
-    s[13*w + k] = v->Z_q_y;
-    s[14*w + k] = v->Z_q_z;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3149,205 +2752,47 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
     stage_uhs_V_X(m, w, i, j, V, &v);
-    /* (uhs-u_1) centripetal acceleration of the connection point */
-    const real uhs_u_1_t = v.uhs_c_3*v.uhs_e_1_in_axes3_z;
-    const real uhs_u_1_t_2 = v.uhs_s_1*v.uhs_s_3 - v.uhs_c_1*uhs_u_1_t;
-    const real uhs_u_1_t_3 = -v.uhs_c_1*v.uhs_s_3 - v.uhs_s_1*uhs_u_1_t;
-    const real axis_y_uhs_axes3_x = m->uhs_base_frame_xz[i]*v.uhs_e_1_in_axes3_y +
-        m->uhs_base_frame_xx[i]*uhs_u_1_t_2 + m->uhs_base_frame_xy[i]*uhs_u_1_t_3;
-    const real axis_y_uhs_axes3_y = m->uhs_base_frame_yz[i]*v.uhs_e_1_in_axes3_y +
-        m->uhs_base_frame_yx[i]*uhs_u_1_t_2 + m->uhs_base_frame_yy[i]*uhs_u_1_t_3;
-    const real axis_y_uhs_axes3_z = m->uhs_base_frame_zz[i]*v.uhs_e_1_in_axes3_y +
-        m->uhs_base_frame_zx[i]*uhs_u_1_t_2 + m->uhs_base_frame_zy[i]*uhs_u_1_t_3;
-    const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_y*v.axis_z_uhs_axes3_z -
-        axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_y;
-    const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_x -
-        axis_y_uhs_axes3_x*v.axis_z_uhs_axes3_z;
-    const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_x*v.axis_z_uhs_axes3_y -
-        axis_y_uhs_axes3_y*v.axis_z_uhs_axes3_x;
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real uhs_u_1_x = omega_y*v.uhs_S_dot_t_3 - omega_z*v.uhs_S_dot_t_2;
-    const real omega_x = V[3*w + j];
-    const real uhs_u_1_y = omega_z*v.uhs_S_dot_t - omega_x*v.uhs_S_dot_t_3;
-    const real uhs_u_1_z = omega_x*v.uhs_S_dot_t_2 - omega_y*v.uhs_S_dot_t;
-    const real uhs_u_1_in_axes3_x = axis_x_uhs_axes3_x*uhs_u_1_x +
-        axis_x_uhs_axes3_y*uhs_u_1_y + axis_x_uhs_axes3_z*uhs_u_1_z;
-    const real uhs_u_1_in_axes3_y = axis_y_uhs_axes3_x*uhs_u_1_x +
-        axis_y_uhs_axes3_y*uhs_u_1_y + axis_y_uhs_axes3_z*uhs_u_1_z;
-    const real uhs_u_1_in_axes3_z = v.axis_z_uhs_axes3_x*uhs_u_1_x +
-        v.axis_z_uhs_axes3_y*uhs_u_1_y + v.axis_z_uhs_axes3_z*uhs_u_1_z;
-    /* (uhs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - v.uhs_bias_in_axes3_x;
-    const real uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - v.uhs_bias_in_axes3_y;
-    const real uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - v.uhs_bias_in_axes3_z;
-    /* (uhs-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real uhs_qdd_1_o = v.inv_uhs_v_1_in_axes2_z*(v.uhs_c_3*uhs_rel_o_in_axes3_x -
-        uhs_rel_o_in_axes3_y*v.uhs_s_3);
-    /* (uhs-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real uhs_qdd_2_o = v.inv_uhs_root_2*(uhs_qdd_1_o*v.uhs_v_1_t_2 -
-        v.uhs_c_3*uhs_rel_o_in_axes3_y - uhs_rel_o_in_axes3_x*v.uhs_s_3);
-    /* (uhs-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real uhs_alpha_1_o_in_axes2_x = v.uhs_e_1_in_axes3_z*uhs_qdd_1_o;
-    const real uhs_alpha_1_o_in_axes2_y = -v.uhs_c_2*uhs_qdd_1_o;
-    /* (uhs-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real uhs_alpha_2_o_in_axes2_x = v.uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x;
-    const real uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - v.uhs_W_2_in_axes2_xz;
-    /* (uhs-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real uhs_B_2_o_in_axes2_xy = v.uhs_W_2_in_axes2_xy - uhs_qdd_2_o;
-    const real uhs_B_2_o_in_axes2_yx = v.uhs_W_2_in_axes2_xy + uhs_qdd_2_o;
-    const real uhs_B_2_o_in_axes2_zx = v.uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y;
-    const real uhs_B_2_o_in_axes2_zy = v.uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x;
-    /* (uhs-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real uhs_alpha_3_o_in_axes3_x = v.uhs_zeta_3_in_axes3_x + v.uhs_c_3*uhs_qdd_2_o -
-        uhs_alpha_2_o_in_axes2_y*v.uhs_s_3;
-    const real uhs_alpha_3_o_in_axes3_y = v.uhs_zeta_3_in_axes3_y -
-        uhs_alpha_2_o_in_axes2_y*v.uhs_c_3 - uhs_qdd_2_o*v.uhs_s_3;
-    const real uhs_alpha_3_o_in_axes3_z = m->inv_uhs_joint3_pitch[i]*uhs_rel_o_in_axes3_z +
-        uhs_alpha_2_o_in_axes2_x;
-    /* (uhs-B_3_o) remainder of the acceleration tensor of link 3 */
-    const real uhs_B_3_o_in_axes3_xy = v.uhs_W_2_in_axes3_xy - uhs_alpha_3_o_in_axes3_z;
-    const real uhs_B_3_o_in_axes3_xz = v.uhs_W_3_in_axes3_xz + uhs_alpha_3_o_in_axes3_y;
-    const real uhs_B_3_o_in_axes3_yx = v.uhs_W_2_in_axes3_xy + uhs_alpha_3_o_in_axes3_z;
-    const real uhs_B_3_o_in_axes3_yz = v.uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x;
-    const real uhs_B_3_o_in_axes3_zx = v.uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y;
-    const real uhs_B_3_o_in_axes3_zy = v.uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x;
-    /* (uhs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real uhs_acc_3_o_in_axes3_x = uhs_u_1_in_axes3_x - axis_x_uhs_axes3_x*m->gravity_x -
-        axis_x_uhs_axes3_y*m->gravity_y - axis_x_uhs_axes3_z*m->gravity_z;
-    const real uhs_acc_3_o_in_axes3_y = uhs_u_1_in_axes3_y - axis_y_uhs_axes3_x*m->gravity_x -
-        axis_y_uhs_axes3_y*m->gravity_y - axis_y_uhs_axes3_z*m->gravity_z;
-    const real uhs_acc_3_o_in_axes3_z = uhs_u_1_in_axes3_z - v.axis_z_uhs_axes3_x*m->gravity_x
-        - v.axis_z_uhs_axes3_y*m->gravity_y - v.axis_z_uhs_axes3_z*m->gravity_z;
-    /* (uhs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-       reference points */
-    const real uhs_mu_3_o_t = v.uhs_omega_3_in_axes3_z*v.uhs_omega_3_in_axes3_z;
-    const real uhs_mu_3_o_in_axes3_x = uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
-        uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_x[i] +
-        m->uhs_J_3_in_spec3_xz[i]*(v.uhs_W_2_t_2 - uhs_mu_3_o_t) +
-        uhs_B_3_o_in_axes3_yx*m->uhs_J_3_in_spec3_xy[i] +
-        uhs_B_3_o_in_axes3_zy*m->uhs_Sigma_3_in_axes3_yy[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_Sigma_3_in_axes3_zz[i] -
-        uhs_B_3_o_in_axes3_zx*m->uhs_J_3_in_spec3_yz[i];
-    const real uhs_mu_3_o_in_axes3_y = uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_x[i] -
-        uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_y[i] -
-        m->uhs_J_3_in_spec3_xy[i]*(v.uhs_W_2_t - uhs_mu_3_o_t) -
-        uhs_B_3_o_in_axes3_xy*m->uhs_J_3_in_spec3_xz[i] +
-        uhs_B_3_o_in_axes3_xz*m->uhs_Sigma_3_in_axes3_zz[i] +
-        uhs_B_3_o_in_axes3_zy*m->uhs_J_3_in_spec3_yz[i] -
-        uhs_B_3_o_in_axes3_zx*m->uhs_Sigma_3_in_axes3_xx[i];
-    const real uhs_mu_3_o_in_axes3_z = uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_y[i] -
-        uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_z[i] +
-        m->uhs_J_3_in_spec3_yz[i]*(v.uhs_W_2_t - v.uhs_W_2_t_2) +
-        uhs_B_3_o_in_axes3_yx*m->uhs_Sigma_3_in_axes3_xx[i] -
-        uhs_B_3_o_in_axes3_xy*m->uhs_Sigma_3_in_axes3_yy[i] +
-        uhs_B_3_o_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i];
-    /* (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real uhs_mu_2_o_t = v.uhs_omega_1_in_axes2_x*v.uhs_omega_1_in_axes2_x;
-    const real uhs_mu_2_o_t_2 = v.uhs_omega_1_in_axes2_y*v.uhs_omega_1_in_axes2_y;
-    const real uhs_mu_2_o_t_3 = v.uhs_qd_2*v.uhs_qd_2;
-    const real uhs_mu_2_o_t_4 = v.uhs_c_1*m->uhs_mu_2_t[i] + m->uhs_mu_2_t_2[i]*v.uhs_s_1;
-    const real uhs_g_in_axes2_x = v.uhs_c_2*uhs_mu_2_o_t_4 +
-        v.uhs_e_1_in_axes3_z*m->uhs_mu_2_t_3[i];
-    const real uhs_g_in_axes2_y = v.uhs_e_1_in_axes3_z*uhs_mu_2_o_t_4 -
-        v.uhs_c_2*m->uhs_mu_2_t_3[i];
-    const real uhs_mu_2_o_in_axes2_x = v.uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_z[i] +
-        uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_y[i] - m->uhs_J_2_in_spec2_yz[i]*(uhs_mu_2_o_t_2
-        - uhs_mu_2_o_t_3) + m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_x +
-        uhs_B_2_o_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
-        uhs_B_2_o_in_axes2_zx*m->uhs_J_2_in_spec2_xz[i] +
-        uhs_B_2_o_in_axes2_zy*m->uhs_Sigma_2_in_axes2_yy[i];
-    const real uhs_mu_2_o_in_axes2_y = v.uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_x[i] -
-        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_y[i] - m->uhs_J_2_in_spec2_xy[i]*(uhs_mu_2_o_t -
-        uhs_mu_2_o_t_3) + m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_y +
-        uhs_B_2_o_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i] -
-        uhs_B_2_o_in_axes2_zx*m->uhs_Sigma_2_in_axes2_xx[i] -
-        uhs_B_2_o_in_axes2_zy*m->uhs_J_2_in_spec2_xz[i];
-    const real uhs_mu_2_o_in_axes2_z = m->uhs_J_2_in_spec2_xy[i]*uhs_alpha_1_o_in_axes2_x -
-        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_z[i] - uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_x[i]
-        - m->uhs_J_2_in_spec2_xz[i]*(uhs_mu_2_o_t - uhs_mu_2_o_t_2) -
-        m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_o_in_axes2_y +
-        uhs_B_2_o_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] -
-        uhs_B_2_o_in_axes2_xy*m->uhs_Sigma_2_in_axes2_yy[i];
-    /* (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-       connection point left out */
-    const real uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z;
-    const real uhs_N_2_o_in_axes2_y = uhs_mu_2_o_in_axes2_y - v.uhs_c_3*uhs_mu_3_o_in_axes3_y
-        - uhs_mu_3_o_in_axes3_x*v.uhs_s_3;
-    const real uhs_N_2_o_in_axes2_z = uhs_mu_2_o_in_axes2_z + v.uhs_c_3*uhs_mu_3_o_in_axes3_x
-        - uhs_mu_3_o_in_axes3_y*v.uhs_s_3;
-    /* (uhs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real uhs_c_o_t = v.inv_uhs_root_2*uhs_N_2_o_in_axes2_z;
-    const real uhs_c_o_t_2 =
-        v.inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*v.uhs_e_1_in_axes3_z -
-        uhs_N_2_o_in_axes2_y*v.uhs_c_2 + uhs_c_o_t*v.uhs_v_1_t_2);
-    const real uhs_c_o_in_axes3_x = m->uhs_h_3_in_spec3_y[i]*(uhs_mu_3_o_t + v.uhs_W_2_t_2) -
-        uhs_B_3_o_in_axes3_xy*m->uhs_h_3_in_spec3_z[i] -
-        uhs_B_3_o_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v.uhs_s_3 -
-        v.uhs_c_3*uhs_c_o_t_2;
-    const real uhs_c_o_in_axes3_y = m->uhs_h_3_in_spec3_z[i]*(uhs_mu_3_o_t + v.uhs_W_2_t) -
-        uhs_B_3_o_in_axes3_yx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + v.uhs_c_3*uhs_c_o_t +
-        uhs_c_o_t_2*v.uhs_s_3;
-    const real uhs_c_o_in_axes3_z = v.uhs_W_2_t_3*m->uhs_h_3_in_spec3_x[i] -
-        uhs_B_3_o_in_axes3_zx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_o_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
-        m->inv_uhs_joint3_pitch[i]*uhs_mu_3_o_in_axes3_z;
-    /* (uhs-U) velocity and gravity terms of the leg force */
-    const real uhs_U_x = -v.axis_z_uhs_axes3_x*uhs_c_o_in_axes3_z -
-        axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y;
-    const real uhs_U_y = -v.axis_z_uhs_axes3_y*uhs_c_o_in_axes3_z -
-        axis_x_uhs_axes3_y*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_y*uhs_c_o_in_axes3_y;
-    const real uhs_U_z = -v.axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z -
-        axis_x_uhs_axes3_z*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_z*uhs_c_o_in_axes3_y;
-    /* (Z_a) rotational part of Z */
-    const real uhs_Z_a_t = uhs_U_z*v.uhs_q_y - uhs_U_y*v.uhs_q_z;
-    const real uhs_Z_a_t_2 = uhs_U_x*v.uhs_q_z - uhs_U_z*v.uhs_q_x;
-    const real uhs_Z_a_t_3 = uhs_U_y*v.uhs_q_x - uhs_U_x*v.uhs_q_y;
+    stage_uhs_Z_dynamics(m, w, i, j, V, &v);
     /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, uhs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, uhs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, uhs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[3*count + k], add, uhs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, uhs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, uhs_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_root_2) > TOLERANCE*m->uhs_size[i]) +
+    gather(&terms[0*count + k], add, v.uhs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.uhs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.uhs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v.uhs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v.uhs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v.uhs_Z_a_t_3);  /* Z_a_z_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
         UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
-INLINE void Z_place_uhs(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_uhs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
-    const real Z_p_x = s[9*w + k];
+    const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[10*w + k];
+    const real Z_p_y = s[19*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[11*w + k];
+    const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[12*w + k];
+    const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[13*w + k];
+    const real Z_q_y = s[22*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[14*w + k];
+    const real Z_q_z = s[23*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
@@ -3360,9 +2805,9 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_uhs[6*LEGS(LEGS_OF_uhs)] = {0}, o_uhs[LEGS(LEGS_OF_uhs)] = {0};
     values v;
     Z_before(m, 1, 0, X, &v, s, t);
@@ -3379,10 +2824,10 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_uhs[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3405,7 +2850,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 
 /* ---- H ---- */
 INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3425,7 +2870,6 @@ INLINE void H_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
-    stage_uhs_H_condition(m, i, &v);
     /* (uhs-w_3) reciprocal vector 3 */
     o[0*count + k] = v.uhs_w_3_x;
     o[1*count + k] = v.uhs_w_3_y;
@@ -3436,13 +2880,13 @@ INLINE void H_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[5*count + k] = v.uhs_H_a_3_z;
     o[7*count + k] = (v.uhs_w_3_x + (v.uhs_w_3_y + v.uhs_w_3_z)) + (v.uhs_H_a_3_x +
         (v.uhs_H_a_3_y + v.uhs_H_a_3_z));
-    o[6*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_root_2) > TOLERANCE*m->uhs_size[i]);
+    o[6*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]);
 }
 
 INLINE void H_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -3454,9 +2898,9 @@ INLINE void H_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[7*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_uhs[8*LEGS(LEGS_OF_uhs)] = {0};
     values v;
     H_before(m, 1, 0, X, &v, s, t);
@@ -3468,9 +2912,10 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_uhs[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3487,10 +2932,12 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3500,20 +2947,21 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
-    /* (W_p) centripetal tensor of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real W_p_xy = omega_x*omega_y;
-    const real omega_z = V[5*w + k];
-    const real W_p_xz = omega_x*omega_z;
-    const real W_p_yz = omega_y*omega_z;
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -3525,28 +2973,31 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
     const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
-    const real f_p_t = omega_x*omega_x;
-    const real f_p_t_2 = omega_y*omega_y;
-    const real f_p_t_3 = omega_z*omega_z;
+    const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
+        v->W_p_t_4*v->h_star_x;
+    const real f_p_y = a_t_y*m->m_star + v->B_p_yx*v->h_star_x + v->B_p_yz*v->h_star_z -
+        v->W_p_t_5*v->h_star_y;
+    const real f_p_z = a_t_z*m->m_star + v->B_p_zx*v->h_star_x + v->B_p_zy*v->h_star_y -
+        v->W_p_t_6*v->h_star_z;
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    const real mu_p_t = m->J_star_in_platform_xx*omega_in_platform_x +
+        m->J_star_in_platform_xy*omega_in_platform_y +
+        m->J_star_in_platform_xz*omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*omega_in_platform_x +
+        m->J_star_in_platform_yy*omega_in_platform_y +
+        m->J_star_in_platform_yz*omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*omega_in_platform_x +
+        m->J_star_in_platform_yz*omega_in_platform_y +
+        m->J_star_in_platform_zz*omega_in_platform_z;
+    const real alpha_x = A[3*w + k];
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
-        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
-    const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
-        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
-        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
-    /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
@@ -3554,29 +3005,29 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
         a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
+        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
         a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
+        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
         a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
     const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
         v->R_xz*mu_p_in_platform_z;
     const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
         v->R_yz*mu_p_in_platform_z;
     const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
         v->R_zz*mu_p_in_platform_z;
-    s[9*w + k] = f_p_x;
-    s[10*w + k] = f_p_y;
-    s[11*w + k] = f_p_z;
-    s[12*w + k] = mu_p_x;
-    s[13*w + k] = mu_p_y;
-    s[14*w + k] = mu_p_z;
+    s[18*w + k] = f_p_x;
+    s[19*w + k] = f_p_y;
+    s[20*w + k] = f_p_z;
+    s[21*w + k] = mu_p_x;
+    s[22*w + k] = mu_p_y;
+    s[23*w + k] = mu_p_z;
 }
 
 INLINE void required_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3585,9 +3036,8 @@ INLINE void required_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
-    stage_uhs_A_X(w, j, A, &v);
     stage_uhs_V_X(m, w, i, j, V, &v);
-    stage_uhs_A_V_X(w, j, V, &v);
+    stage_uhs_A_V_X(m, w, i, j, s, A, &v);
     stage_uhs_legs_required(m, i, &v);
     /* (uhs-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -3601,10 +3051,6 @@ INLINE void required_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     const real uhs_R_a_t = uhs_c_y*v.uhs_q_z - uhs_c_z*v.uhs_q_y;
     const real uhs_R_a_t_2 = uhs_c_z*v.uhs_q_x - uhs_c_x*v.uhs_q_z;
     const real uhs_R_a_t_3 = uhs_c_x*v.uhs_q_y - uhs_c_y*v.uhs_q_x;
-    /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
-    const real uhs_H_a_3_x = v.uhs_q_y*v.uhs_w_3_z - v.uhs_q_z*v.uhs_w_3_y;
-    const real uhs_H_a_3_y = v.uhs_q_z*v.uhs_w_3_x - v.uhs_q_x*v.uhs_w_3_z;
-    const real uhs_H_a_3_z = v.uhs_q_x*v.uhs_w_3_y - v.uhs_q_y*v.uhs_w_3_x;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, uhs_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, uhs_c_y);  /* R_t_y_of_legs */
@@ -3617,18 +3063,18 @@ INLINE void required_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     o[0*count + k] = v.uhs_w_3_x;
     o[1*count + k] = v.uhs_w_3_y;
     o[2*count + k] = v.uhs_w_3_z;
-    /* (uhs-H_a_3) */
-    o[3*count + k] = uhs_H_a_3_x;
-    o[4*count + k] = uhs_H_a_3_y;
-    o[5*count + k] = uhs_H_a_3_z;
-    o[6*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_root_2) > TOLERANCE*m->uhs_size[i]) +
+    /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.uhs_H_a_3_x;
+    o[4*count + k] = v.uhs_H_a_3_y;
+    o[5*count + k] = v.uhs_H_a_3_z;
+    o[6*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
         UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
 INLINE void required_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -3643,23 +3089,23 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 {
     /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
-    const real f_p_x = s[9*w + k];
+    const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
-    const real f_p_y = s[10*w + k];
+    const real f_p_y = s[19*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
     const real R_t_z_of_legs = sums[2*w + k];
-    const real f_p_z = s[11*w + k];
+    const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
-    const real mu_p_x = s[12*w + k];
+    const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
-    const real mu_p_y = s[13*w + k];
+    const real mu_p_y = s[22*w + k];
     const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
-    const real mu_p_z = s[14*w + k];
+    const real mu_p_z = s[23*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
@@ -3672,12 +3118,12 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_uhs[6*LEGS(LEGS_OF_uhs)] = {0}, o_uhs[7*LEGS(LEGS_OF_uhs)] = {0};
     values v;
-    required_before(m, 1, 0, X, &v, s, t);
+    required_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         required_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, V, A, terms_uhs, o_uhs);
     }
@@ -3692,13 +3138,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, verdict *restrict t)
+    real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_uhs[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s, t);
+        required_before(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3717,7 +3163,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 
 /* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, verdict *t)
+    *v, real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3736,26 +3182,24 @@ INLINE void inverse_kinematics_legs_uhs(const prepared *m, size_t w, size_t i, s
     size_t count, const real *s, const real *X, real *o)
 {
     values_uhs v;
-    stage_uhs_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    stage_uhs_X(m, w, i, j, s, X, &v);
     /* (uhs-q_1) displacement of joint 1 */
-    const real uhs_q_1 = angle(v.inv_uhs_rho2_1*v.uhs_S_in_turn1_y*v.uhs_root_1,
-        v.inv_uhs_rho2_1*v.uhs_S_in_turn1_x*v.uhs_root_1);
+    const real uhs_q_1 = angle(v.uhs_s_1, v.uhs_c_1);
     /* (uhs-q_2) displacement of joint 2 */
-    const real uhs_q_2 = angle(-v.inv_uhs_rho2_2*v.uhs_S_in_turn1_z*v.uhs_root_2,
-        v.inv_uhs_rho2_2*v.uhs_root_1*v.uhs_root_2);
+    const real uhs_q_2 = angle(-v.uhs_e_1_in_axes3_z, v.uhs_c_2);
     /* (uhs-q_1) */
     o[0*count + k] = uhs_q_1;
     /* (uhs-q_2) */
     o[1*count + k] = uhs_q_2;
     /* (uhs-q_3) displacement of joint 3 */
-    o[2*count + k] = -v.uhs_q_3_t;
-    o[4*count + k] = uhs_q_1 + (uhs_q_2 + v.uhs_q_3_t);
-    o[3*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]);
+    o[2*count + k] = -v.uhs_h_3_t_11;
+    o[4*count + k] = uhs_q_1 + (uhs_q_2 + v.uhs_h_3_t_11);
+    o[3*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]);
 }
 
 INLINE void inverse_kinematics_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[3*i*w + k] = o[0*count + at];
     q[(1 + 3*i)*w + k] = o[1*count + at];
@@ -3764,9 +3208,9 @@ INLINE void inverse_kinematics_place_uhs(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_uhs[5*LEGS(LEGS_OF_uhs)] = {0};
     values v;
     inverse_kinematics_before(m, 1, 0, X, &v, s, t);
@@ -3779,9 +3223,9 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_uhs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3799,7 +3243,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 
 /* ---- joint_rates ---- */
 INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, verdict *t)
+    real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3819,49 +3263,22 @@ INLINE void joint_rates_legs_uhs(const prepared *m, size_t w, size_t i, size_t j
 {
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
-    /* (uhs-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real uhs_S_dot_x = t_dot_x + omega_y*v.uhs_q_z - omega_z*v.uhs_q_y;
-    const real omega_x = V[3*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real uhs_S_dot_y = t_dot_y + omega_z*v.uhs_q_x - omega_x*v.uhs_q_z;
-    const real t_dot_z = V[2*w + j];
-    const real uhs_S_dot_z = t_dot_z + omega_x*v.uhs_q_y - omega_y*v.uhs_q_x;
-    /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-    const real uhs_v_1_in_axes3_x = v.uhs_c_2*v.uhs_c_3*v.uhs_root_2;
-    const real uhs_v_1_in_axes2_z = v.uhs_c_3*uhs_v_1_in_axes3_x + v.uhs_s_3*v.uhs_v_1_t;
+    stage_uhs_V_X(m, w, i, j, V, &v);
     /* (uhs-qd_1) rate of joint 1 */
-    const real uhs_qd_1_t = uhs_S_dot_x*m->uhs_base_frame_xx[i] +
-        uhs_S_dot_y*m->uhs_base_frame_yx[i] + uhs_S_dot_z*m->uhs_base_frame_zx[i];
-    const real uhs_qd_1_t_2 = uhs_S_dot_x*m->uhs_base_frame_xy[i] +
-        uhs_S_dot_y*m->uhs_base_frame_yy[i] + uhs_S_dot_z*m->uhs_base_frame_zy[i];
-    const real uhs_qd_1 = (v.uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*v.uhs_s_1)/uhs_v_1_in_axes2_z;
+    o[0*count + k] = v.uhs_qd_1;
     /* (uhs-qd_2) rate of joint 2 */
-    const real uhs_qd_2_t = uhs_S_dot_x*m->uhs_base_frame_xz[i] +
-        uhs_S_dot_y*m->uhs_base_frame_yz[i] + uhs_S_dot_z*m->uhs_base_frame_zz[i];
-    const real uhs_qd_2_t_2 = v.uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*v.uhs_s_1;
-    const real uhs_qd_2 = (v.uhs_e_1_in_axes3_z*uhs_qd_2_t_2 - v.uhs_c_2*uhs_qd_2_t +
-        uhs_qd_1*(v.uhs_s_3*uhs_v_1_in_axes3_x - v.uhs_c_3*v.uhs_v_1_t))/v.uhs_root_2;
+    o[1*count + k] = v.uhs_qd_2;
     /* (uhs-qd_3) rate of joint 3 */
-    const real uhs_qd_3 = m->inv_uhs_joint3_pitch[i]*(v.uhs_c_2*uhs_qd_2_t_2 +
-        v.uhs_e_1_in_axes3_z*uhs_qd_2_t);
-    /* (uhs-qd_1) */
-    o[0*count + k] = uhs_qd_1;
-    /* (uhs-qd_2) */
-    o[1*count + k] = uhs_qd_2;
-    /* (uhs-qd_3) */
-    o[2*count + k] = uhs_qd_3;
-    o[4*count + k] = uhs_qd_1 + (uhs_qd_2 + uhs_qd_3);
-    o[3*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_root_2) > TOLERANCE*m->uhs_size[i]) +
-        UNLESS(magnitude(uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
+    o[2*count + k] = v.uhs_qd_3;
+    o[4*count + k] = v.uhs_qd_1 + (v.uhs_qd_2 + v.uhs_qd_3);
+    o[3*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
+        UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
 INLINE void joint_rates_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[3*i*w + k] = o[0*count + at];
     qd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -3870,9 +3287,10 @@ INLINE void joint_rates_place_uhs(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_uhs[5*LEGS(LEGS_OF_uhs)] = {0};
     values v;
     joint_rates_before(m, 1, 0, X, &v, s, t);
@@ -3885,9 +3303,9 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_uhs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3904,10 +3322,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
+    real *V, const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3917,6 +3337,15 @@ INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, co
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -3925,75 +3354,23 @@ INLINE void joint_accelerations_legs_uhs(const prepared *m, size_t w, size_t i, 
 {
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
-    stage_uhs_A_X(w, j, A, &v);
     stage_uhs_V_X(m, w, i, j, V, &v);
-    stage_uhs_A_V_X(w, j, V, &v);
-    /* (uhs-W_2) centripetal tensor of link 2 */
-    const real uhs_W_2_t = v.uhs_omega_2_in_axes3_x*v.uhs_omega_2_in_axes3_x +
-        v.uhs_omega_2_in_axes3_y*v.uhs_omega_2_in_axes3_y;
-    /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real uhs_beta_3_in_axes3_x = v.uhs_omega_2_in_axes3_y*v.uhs_qd_3 +
-        v.uhs_zeta_2_in_axes3_x;
-    const real uhs_beta_3_in_axes3_y = v.uhs_zeta_2_in_axes3_y -
-        v.uhs_omega_2_in_axes3_x*v.uhs_qd_3;
-    /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
-    const real uhs_bias_in_axes3_x = v.uhs_bias_t_2*v.uhs_omega_2_in_axes3_y +
-        m->uhs_joint3_offset_x[i]*(v.uhs_omega_1_in_axes2_x*v.uhs_omega_2_in_axes3_x +
-        v.uhs_zeta_2_in_axes3_y) +
-        v.uhs_x_3_in_axes2_x*(v.uhs_omega_2_in_axes3_x*v.uhs_omega_3_in_axes3_z +
-        uhs_beta_3_in_axes3_y);
-    const real uhs_bias_in_axes3_y =
-        m->uhs_joint3_offset_x[i]*(v.uhs_omega_1_in_axes2_x*v.uhs_omega_2_in_axes3_y -
-        v.uhs_zeta_2_in_axes3_x) - v.uhs_bias_t_2*v.uhs_omega_2_in_axes3_x +
-        v.uhs_x_3_in_axes2_x*(v.uhs_omega_2_in_axes3_y*v.uhs_omega_3_in_axes3_z -
-        uhs_beta_3_in_axes3_x);
-    const real uhs_bias_in_axes3_z = -uhs_W_2_t*m->uhs_joint3_offset_x[i] -
-        uhs_W_2_t*v.uhs_x_3_in_axes2_x;
-    /* (uhs-rel) acceleration of the connection point left to the joint accelerations */
-    const real uhs_rel_t = v.uhs_c_3*v.uhs_e_1_in_axes3_z;
-    const real uhs_rel_t_2 = v.uhs_s_1*v.uhs_s_3 - v.uhs_c_1*uhs_rel_t;
-    const real uhs_rel_t_3 = -v.uhs_c_1*v.uhs_s_3 - uhs_rel_t*v.uhs_s_1;
-    const real axis_y_uhs_axes3_x = m->uhs_base_frame_xz[i]*v.uhs_e_1_in_axes3_y +
-        m->uhs_base_frame_xx[i]*uhs_rel_t_2 + m->uhs_base_frame_xy[i]*uhs_rel_t_3;
-    const real axis_y_uhs_axes3_y = m->uhs_base_frame_yz[i]*v.uhs_e_1_in_axes3_y +
-        m->uhs_base_frame_yx[i]*uhs_rel_t_2 + m->uhs_base_frame_yy[i]*uhs_rel_t_3;
-    const real axis_y_uhs_axes3_z = m->uhs_base_frame_zz[i]*v.uhs_e_1_in_axes3_y +
-        m->uhs_base_frame_zx[i]*uhs_rel_t_2 + m->uhs_base_frame_zy[i]*uhs_rel_t_3;
-    const real uhs_rel_in_axes3_x = v.uhs_S_ddot_x*(axis_y_uhs_axes3_y*v.axis_z_uhs_axes3_z -
-        axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_y) +
-        v.uhs_S_ddot_y*(axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_x -
-        axis_y_uhs_axes3_x*v.axis_z_uhs_axes3_z) +
-        v.uhs_S_ddot_z*(axis_y_uhs_axes3_x*v.axis_z_uhs_axes3_y -
-        axis_y_uhs_axes3_y*v.axis_z_uhs_axes3_x) - uhs_bias_in_axes3_x;
-    const real uhs_rel_in_axes3_y = axis_y_uhs_axes3_x*v.uhs_S_ddot_x +
-        axis_y_uhs_axes3_y*v.uhs_S_ddot_y + axis_y_uhs_axes3_z*v.uhs_S_ddot_z -
-        uhs_bias_in_axes3_y;
-    const real uhs_rel_in_axes3_z = v.axis_z_uhs_axes3_x*v.uhs_S_ddot_x +
-        v.axis_z_uhs_axes3_y*v.uhs_S_ddot_y + v.axis_z_uhs_axes3_z*v.uhs_S_ddot_z -
-        uhs_bias_in_axes3_z;
+    stage_uhs_A_V_X(m, w, i, j, s, A, &v);
     /* (uhs-qdd_1) acceleration of joint 1 */
-    const real uhs_qdd_1 = v.inv_uhs_v_1_in_axes2_z*(v.uhs_c_3*uhs_rel_in_axes3_x -
-        uhs_rel_in_axes3_y*v.uhs_s_3);
+    o[0*count + k] = v.uhs_qdd_1;
     /* (uhs-qdd_2) acceleration of joint 2 */
-    const real uhs_qdd_2 = v.inv_uhs_root_2*(uhs_qdd_1*v.uhs_v_1_t_2 -
-        v.uhs_c_3*uhs_rel_in_axes3_y - uhs_rel_in_axes3_x*v.uhs_s_3);
+    o[1*count + k] = v.uhs_qdd_2;
     /* (uhs-qdd_3) acceleration of joint 3 */
-    const real uhs_qdd_3 = m->inv_uhs_joint3_pitch[i]*uhs_rel_in_axes3_z;
-    /* (uhs-qdd_1) */
-    o[0*count + k] = uhs_qdd_1;
-    /* (uhs-qdd_2) */
-    o[1*count + k] = uhs_qdd_2;
-    /* (uhs-qdd_3) */
-    o[2*count + k] = uhs_qdd_3;
-    o[4*count + k] = uhs_qdd_1 + (uhs_qdd_2 + uhs_qdd_3);
-    o[3*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_root_2) > TOLERANCE*m->uhs_size[i]) +
+    o[2*count + k] = v.uhs_qdd_3;
+    o[4*count + k] = v.uhs_qdd_1 + (v.uhs_qdd_2 + v.uhs_qdd_3);
+    o[3*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
         UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
 INLINE void joint_accelerations_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[3*i*w + k] = o[0*count + at];
     qdd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -4003,12 +3380,12 @@ INLINE void joint_accelerations_place_uhs(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_uhs[5*LEGS(LEGS_OF_uhs)] = {0};
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s, t);
+    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         joint_accelerations_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, V, A, o_uhs);
     }
@@ -4018,13 +3395,13 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_uhs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s, t);
+        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4037,10 +3414,12 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
+    real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -4050,6 +3429,15 @@ INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, va
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -4058,9 +3446,8 @@ INLINE void legs_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_
 {
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
-    stage_uhs_A_X(w, j, A, &v);
     stage_uhs_V_X(m, w, i, j, V, &v);
-    stage_uhs_A_V_X(w, j, V, &v);
+    stage_uhs_A_V_X(m, w, i, j, s, A, &v);
     stage_uhs_legs_required(m, i, &v);
     /* (uhs-c_true) leg force on the platform without actuation, the last link's mass included */
     const real uhs_c_true_in_axes3_x = v.uhs_c_in_axes3_x -
@@ -4086,14 +3473,14 @@ INLINE void legs_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_
     o[3*count + k] = v.uhs_w_3_x;
     o[4*count + k] = v.uhs_w_3_y;
     o[5*count + k] = v.uhs_w_3_z;
-    o[6*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_root_2) > TOLERANCE*m->uhs_size[i]) +
+    o[6*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
         UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
 INLINE void legs_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[3*i*w + k] = o[0*count + at];
     leg_force[(3*i + 1)*w + k] = o[1*count + at];
@@ -4105,12 +3492,12 @@ INLINE void legs_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_uhs[7*LEGS(LEGS_OF_uhs)] = {0};
     values v;
-    legs_before(m, 1, 0, X, &v, s, t);
+    legs_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         legs_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, V, A, o_uhs);
     }
@@ -4121,7 +3508,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 
 /* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4143,53 +3530,37 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
-        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
-        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
-        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
-        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
-        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
-    s[9*w + k] = potential_t;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
+        m->gravity_y*(m->m_star*t_y + v->h_star_y) + m->gravity_z*(m->m_star*t_z +
+        v->h_star_z);
+    s[18*w + k] = potential_t;
 }
 
 INLINE void potential_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
     values_uhs v;
-    stage_uhs_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real uhs_c_1 = v.inv_uhs_rho2_1*v.uhs_S_in_turn1_x*v.uhs_root_1;
-    /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
-    const real uhs_s_1 = v.inv_uhs_rho2_1*v.uhs_S_in_turn1_y*v.uhs_root_1;
-    /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real uhs_c_2 = v.inv_uhs_rho2_2*v.uhs_root_1*v.uhs_root_2;
-    /* (uhs-c_3) cosine of the angle of joint 3 from its reference direction */
-    const real uhs_c_3 = cosine(v.uhs_q_3_t);
-    /* (uhs-s_3) sine of the angle of joint 3 from its reference direction */
-    const real uhs_s_3 = -sine(v.uhs_q_3_t);
+    stage_uhs_X(m, w, i, j, s, X, &v);
     /* (potential) */
-    const real uhs_e_1_in_axes3_z = v.inv_uhs_rho2_2*v.uhs_S_in_turn1_z*v.uhs_root_2;
-    const real uhs_potential_t_4 = uhs_c_1*m->uhs_mu_2_t[i] + m->uhs_mu_2_t_2[i]*uhs_s_1;
-    const real uhs_potential_t_5 = uhs_c_1*m->uhs_potential_t[i] +
-        m->uhs_potential_t_2[i]*uhs_s_1;
-    const real uhs_potential_t_6 = (uhs_e_1_in_axes3_z*uhs_potential_t_4 -
-        uhs_c_2*m->uhs_mu_2_t_3[i])*(m->uhs_h_2_in_spec2_z[i] -
-        m->uhs_link2_mass[i]*(uhs_e_1_in_axes3_z*uhs_potential_t_5 -
-        uhs_c_2*m->uhs_potential_t_3[i]) + uhs_c_3*m->uhs_h_3_in_spec3_z[i] +
-        m->uhs_h_3_in_spec3_y[i]*uhs_s_3) - (uhs_c_2*uhs_potential_t_4 +
-        uhs_e_1_in_axes3_z*m->uhs_mu_2_t_3[i])*(m->uhs_h_2_in_spec2_x[i] +
-        m->uhs_h_3_in_spec3_x[i] + m->uhs_link2_mass[i]*(uhs_c_2*uhs_potential_t_5 +
-        uhs_e_1_in_axes3_z*m->uhs_potential_t_3[i])) - (uhs_c_1*m->uhs_mu_2_t_2[i] -
-        m->uhs_mu_2_t[i]*uhs_s_1)*(m->uhs_h_2_in_spec2_y[i] +
-        m->uhs_link2_mass[i]*(uhs_c_1*m->uhs_potential_t_2[i] - m->uhs_potential_t[i]*uhs_s_1)
-        + uhs_c_3*m->uhs_h_3_in_spec3_y[i] - m->uhs_h_3_in_spec3_z[i]*uhs_s_3);
+    const real uhs_potential_t_4 = v.uhs_c_1*m->uhs_potential_t[i] +
+        m->uhs_potential_t_2[i]*v.uhs_s_1;
+    const real uhs_potential_t_5 = v.uhs_g_in_axes2_y*(m->uhs_h_2_in_spec2_z[i] -
+        m->uhs_link2_mass[i]*(v.uhs_e_1_in_axes3_z*uhs_potential_t_4 -
+        v.uhs_c_2*m->uhs_potential_t_3[i]) + v.uhs_h_3_in_spec2_z) -
+        v.uhs_g_in_axes2_x*(m->uhs_h_2_in_spec2_x[i] + m->uhs_h_3_in_spec3_x[i] +
+        m->uhs_link2_mass[i]*(v.uhs_c_2*uhs_potential_t_4 +
+        v.uhs_e_1_in_axes3_z*m->uhs_potential_t_3[i])) -
+        v.uhs_g_in_axes2_z*(m->uhs_h_2_in_spec2_y[i] +
+        m->uhs_link2_mass[i]*(v.uhs_c_1*m->uhs_potential_t_2[i] -
+        m->uhs_potential_t[i]*v.uhs_s_1) + v.uhs_e_2_in_axes3_x*m->uhs_h_3_in_spec3_y[i] -
+        m->uhs_h_3_in_spec3_z[i]*v.uhs_h_3_t_12);
     /* (potential) */
-    gather(&terms[0*count + k], add, uhs_potential_t_6);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]);
+    gather(&terms[0*count + k], add, uhs_potential_t_5);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]);
 }
 
-INLINE void potential_place_uhs(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_uhs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -4198,15 +3569,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 {
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
-    const real potential_t = s[9*w + k];
+    const real potential_t = s[18*w + k];
     const real potential_ = potential_of_legs - potential_t;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[10] = {0}, sums[1] = {0};
+    real s[19] = {0}, sums[1] = {0};
     real terms_uhs[LEGS(LEGS_OF_uhs)] = {0}, o_uhs[LEGS(LEGS_OF_uhs)] = {0};
     values v;
     potential_before(m, 1, 0, X, &v, s, t);
@@ -4225,7 +3596,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4248,18 +3619,12 @@ INLINE void condition_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
-    stage_uhs_H_condition(m, i, &v);
-    /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real uhs_c_2 = m->uhs_branch_1[i]*root(v.uhs_rho2_1)*v.uhs_root_2/v.uhs_rho2_2;
-    /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-    const real uhs_v_1_in_axes2_z = uhs_c_2*v.uhs_c_3*v.uhs_c_3*v.uhs_root_2 +
-        uhs_c_2*v.uhs_root_2*v.uhs_s_3*v.uhs_s_3;
     /* (uhs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real uhs_pivot_size = magnitude(v.uhs_rho2_1);
-    const real uhs_pivot_size_2 = magnitude(v.uhs_rho2_2);
-    const real uhs_pivot_size_3 = magnitude(v.uhs_root_2);
-    const real uhs_pivot_size_4 = magnitude(uhs_v_1_in_axes2_z);
+    const real uhs_pivot_size = magnitude(v.uhs_h_3_t_7);
+    const real uhs_pivot_size_2 = magnitude(v.uhs_h_3_t_8);
+    const real uhs_pivot_size_3 = magnitude(v.uhs_h_3_t_9);
+    const real uhs_pivot_size_4 = magnitude(v.uhs_v_1_in_axes2_z);
     const real uhs_least_pivots = lesser(lesser(lesser(m->inv_uhs_size[i]*uhs_pivot_size_3,
         m->inv_uhs_size[i]*uhs_pivot_size_4), root(m->inv_uhs_size_t[i]*uhs_pivot_size)),
         root(m->inv_uhs_size_t[i]*uhs_pivot_size_2));
@@ -4283,14 +3648,14 @@ INLINE void condition_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, 
     o[6*count + k] = uhs_least_pivots;
     o[8*count + k] = (v.uhs_w_3_x + (v.uhs_w_3_y + v.uhs_w_3_z)) + ((v.uhs_H_a_3_x +
         v.uhs_H_a_3_y) + (v.uhs_H_a_3_z + uhs_least_pivots));
-    o[7*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_root_2) > TOLERANCE*m->uhs_size[i]) +
-        UNLESS(magnitude(uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
+    o[7*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
+        UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
 INLINE void condition_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *pivots, verdict *t)
+    *o, real *H, real *pivots, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -4304,7 +3669,7 @@ INLINE void condition_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t 
 }
 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
-    *lengths, verdict *t)
+    *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_uhs = sums[0*w + k];
@@ -4315,9 +3680,9 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
-    real s[9] = {0}, sums[1] = {0};
+    real s[18] = {0}, sums[1] = {0};
     real terms_uhs[LEGS(LEGS_OF_uhs)] = {0}, o_uhs[9*LEGS(LEGS_OF_uhs)] = {0};
     clear(reach, NL);
     values v;
@@ -4338,196 +3703,179 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int hexapod_6uhs_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int hexapod_6uhs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int hexapod_6uhs_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int hexapod_6uhs_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int hexapod_6uhs_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int hexapod_6uhs_joint_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int hexapod_6uhs_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -4709,14 +4057,9 @@ int hexapod_6uhs_inverse_dynamics(const prepared *m, const real *X, const real *
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -4731,7 +4074,7 @@ int hexapod_6uhs_inverse_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    return settled(&why, NU, tau_out);
+    return final_status(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4739,7 +4082,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4750,8 +4093,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_6(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
 }
 
 static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
@@ -4763,14 +4106,9 @@ int hexapod_6uhs_forward_dynamics(const prepared *m, const real *X, const real *
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
         subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -4789,7 +4127,7 @@ int hexapod_6uhs_forward_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4798,7 +4136,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
         A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4813,8 +4151,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_6(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int hexapod_6uhs_complete_acceleration(const prepared *m, const real *X, const real *V, const real
@@ -4824,13 +4162,11 @@ int hexapod_6uhs_complete_acceleration(const prepared *m, const real *X, const r
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int hexapod_6uhs_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -4838,49 +4174,27 @@ int hexapod_6uhs_leg_reactions(const prepared *m, const real *X, const real *V, 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
-        unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0},
-        work[NV*PADDED(NV)];
-    verdict why;
+    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, &why);
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - wrench[i];
-    }
-    eliminate_6(1, NV, order_tau, sizes_tau, H, subtract_1, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NV, 1, H, work);
-        solve_apart(NV, subtract_1, work, solve_1, why.singular);
-        check(NV, 1, solve_1, why.overflow);
-    }
+    flag_status(hexapod_6uhs_inverse_dynamics(m, X, V, A, wrench, solve_1), &why);
     legs_run(m, X, V, A, leg_force, actuator, &why);
     for (size_t i = 0; i < 3*NL; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
-    check(3*NL, 1, forces, why.overflow);
-    copy(3*NL, forces, forces_out);
-    return settled(&why, 3*NL, forces_out);
+    return finished(3*NL, forces, forces_out, &why);
 }
 
 int hexapod_6uhs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -4889,8 +4203,8 @@ int hexapod_6uhs_energy(const prepared *m, const real *X, const real *V, real *k
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int hexapod_6uhs_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -4900,9 +4214,9 @@ int hexapod_6uhs_condition(const prepared *m, const real *X, real *sigma_out, re
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
         divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -4922,8 +4236,8 @@ int hexapod_6uhs_condition(const prepared *m, const real *X, real *sigma_out, re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int hexapod_6uhs_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4933,13 +4247,12 @@ int hexapod_6uhs_manipulability(const prepared *m, const real *X, real *measure_
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
         = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4957,8 +4270,8 @@ int hexapod_6uhs_manipulability(const prepared *m, const real *X, real *measure_
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int hexapod_6uhs_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -4968,13 +4281,12 @@ int hexapod_6uhs_singularity_distance(const prepared *m, const real *X, real *ac
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
         = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4992,52 +4304,47 @@ int hexapod_6uhs_singularity_distance(const prepared *m, const real *X, real *ac
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[6] = {0}, gap[NU] = {0};
-    verdict why;
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[6] = {0}, residual[NU] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(6, 1, hexapod_6uhs_ACTUATED, q, q_of_inverse_kinematics_from_2);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_2[i];
+        residual[i] = q_actuated[i] - q_of_inverse_kinematics_from_2[i];
     }
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -5049,21 +4356,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -5077,17 +4384,11 @@ int hexapod_6uhs_forward_kinematics(const prepared *m, const real *q_actuated, c
     real *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int hexapod_6uhs_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5096,33 +4397,25 @@ int hexapod_6uhs_dissipation(const prepared *m, const real *X, const real *V, re
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int hexapod_6uhs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int hexapod_6uhs_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5130,256 +4423,177 @@ int hexapod_6uhs_joint_margins(const prepared *m, const real *X, real *margins_o
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int hexapod_6uhs_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int hexapod_6uhs_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, hexapod_6uhs_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int hexapod_6uhs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, hexapod_6uhs_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int hexapod_6uhs_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, hexapod_6uhs_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int hexapod_6uhs_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int hexapod_6uhs_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
-    check(9, 1, R, why.overflow);
-    copy(9, R, R_out);
-    return settled(&why, 9, R_out);
+    return finished(9, R, R_out, &why);
 }
 
 int hexapod_6uhs_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(R, 9);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(9, 1, R, why.invalid);
-    }
+    check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int hexapod_6uhs_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const V_from_3 = V + 3;
     const real *const X_from_3 = X + 3;
     quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
-    const real *const V_from_0 = V;
-    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    beside(1, 3, 4, V, quaternion_rate_1, X_dot);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int hexapod_6uhs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(rpy, 3);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(3, 1, rpy, why.invalid);
-    }
+    check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int hexapod_6uhs_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
-    const real *const X_from_0 = X;
+    check_two(NQ, X, NV, step, why.invalid);
     const real *const X_from_3 = X + 3;
-    const real *const step_from_0 = step;
     const real *const step_from_3 = step + 3;
     turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X_from_0[i] + step_from_0[i];
+        add_1[i] = X[i] + step[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int hexapod_6uhs_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
+    check_two(NQ, X0, NQ, X1, why.invalid);
     const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
     const real *const X1_from_3 = X1 + 3;
     turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
+        subtract_1[i] = X1[i] - X0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int hexapod_6uhs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
-        turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
-    verdict why;
+    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
-    const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
-    const real *const X1_from_3 = X1 + 3;
-    turn_between(X0_from_3, X1_from_3, turn_between_1);
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
-    }
-    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(hexapod_6uhs_difference(X0, X1, join_1), &why);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const X0_from_0_2 = X0;
     const real *const X0_from_3_2 = X0 + 3;
-    const real *const scale_1_from_0 = scale_1;
     const real *const scale_1_from_3 = scale_1 + 3;
     turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
+        add_1[i] = X0[i] + scale_1[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

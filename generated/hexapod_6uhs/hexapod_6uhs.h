@@ -144,13 +144,13 @@ extern const char *const hexapod_6uhs_ACTUATOR_NAMES[HEXAPOD_6UHS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *model);
 
-/* Inertia matrix M. 1347 mul, 957 add, 24 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1311 mul, 945 add, 24 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV). */
 int hexapod_6uhs_M(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, hexapod_6uhs_real
     *M);
 size_t hexapod_6uhs_M_batch(const hexapod_6uhs_model *model, size_t n, const hexapod_6uhs_real *X,
     hexapod_6uhs_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1563 mul, 1188 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1572 mul, 1194 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hexapod_6uhs_Z(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, hexapod_6uhs_real *Z);
@@ -171,14 +171,14 @@ int hexapod_6uhs_inverse_kinematics(const hexapod_6uhs_model *model, const hexap
 size_t hexapod_6uhs_inverse_kinematics_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, hexapod_6uhs_real *q, int *status);
 
-/* Rates of all joints. 390 mul, 246 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 402 mul, 246 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int hexapod_6uhs_joint_rates(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, hexapod_6uhs_real *rates);
 size_t hexapod_6uhs_joint_rates_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *rates, int *status);
 
-/* Accelerations of all joints. 870 mul, 546 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 858 mul, 537 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hexapod_6uhs_joint_accelerations(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
     const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, hexapod_6uhs_real *accelerations);
@@ -186,7 +186,7 @@ size_t hexapod_6uhs_joint_accelerations_batch(const hexapod_6uhs_model *model, s
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A,
     hexapod_6uhs_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 2577 mul, 1947 add, 24 div, 12 sqrt, 12 trig. In: X
+/* M, Z and H together, sharing the work. 2514 mul, 1917 add, 24 div, 12 sqrt, 12 trig. In: X
    (NQ), V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexapod_6uhs_dynamics(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, hexapod_6uhs_real *M, hexapod_6uhs_real *Z, hexapod_6uhs_real *H);
@@ -194,7 +194,7 @@ size_t hexapod_6uhs_dynamics_batch(const hexapod_6uhs_model *model, size_t n, co
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *M, hexapod_6uhs_real *Z,
     hexapod_6uhs_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1677 mul, 1287 add, 24 div, 12 sqrt, 12
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1659 mul, 1269 add, 24 div, 12 sqrt, 12
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hexapod_6uhs_inverse_dynamics(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
@@ -204,7 +204,7 @@ size_t hexapod_6uhs_inverse_dynamics_batch(const hexapod_6uhs_model *model, size
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, const
     hexapod_6uhs_real *wrench, hexapod_6uhs_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2577 mul, 1947 add, 24 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 2514 mul, 1917 add, 24 div, 12
    sqrt, 12 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexapod_6uhs_forward_dynamics(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
@@ -225,7 +225,7 @@ size_t hexapod_6uhs_complete_acceleration_batch(const hexapod_6uhs_model *model,
     hexapod_6uhs_real *wrench, hexapod_6uhs_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 1530 mul, 1152 add, 24 div, 12 sqrt, 12 trig; inverse dynamics
+   forces of inverse_dynamics. 1518 mul, 1143 add, 24 div, 12 sqrt, 12 trig; inverse dynamics
    apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 3). */
 int hexapod_6uhs_leg_reactions(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, const hexapod_6uhs_real *A, const hexapod_6uhs_real *wrench,
@@ -245,7 +245,7 @@ size_t hexapod_6uhs_energy_batch(const hexapod_6uhs_model *model, size_t n, cons
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 301 mul, 210 add, 12 div, 25 sqrt, 12 trig; the singular values apart. In: X (NQ). Out:
+   legs. 307 mul, 210 add, 12 div, 25 sqrt, 12 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (6). */
 int hexapod_6uhs_condition(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
     hexapod_6uhs_real *sigma, hexapod_6uhs_real *legs);
@@ -253,14 +253,14 @@ size_t hexapod_6uhs_condition_batch(const hexapod_6uhs_model *model, size_t n, c
     hexapod_6uhs_real *X, hexapod_6uhs_real *sigma, hexapod_6uhs_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 301 mul, 210 add, 12 div, 25 sqrt, 12 trig; the singular
+   the least over the largest of them. 307 mul, 210 add, 12 div, 25 sqrt, 12 trig; the singular
    values apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int hexapod_6uhs_manipulability(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
     hexapod_6uhs_real *measure, hexapod_6uhs_real *isotropy);
 size_t hexapod_6uhs_manipulability_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, hexapod_6uhs_real *measure, hexapod_6uhs_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 301
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 307
    mul, 210 add, 12 div, 25 sqrt, 12 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int hexapod_6uhs_singularity_distance(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
@@ -283,7 +283,7 @@ int hexapod_6uhs_dissipation(const hexapod_6uhs_model *model, const hexapod_6uhs
 size_t hexapod_6uhs_dissipation_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1347 mul, 957 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 1311 mul, 945 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hexapod_6uhs_momentum(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, hexapod_6uhs_real *momentum);
@@ -312,14 +312,14 @@ int hexapod_6uhs_actuator_positions(const hexapod_6uhs_model *model, const hexap
 size_t hexapod_6uhs_actuator_positions_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, hexapod_6uhs_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 390 mul, 246 add, 24 div, 12 sqrt, 12 trig.
+/* Rates of the actuated joints, in the order of tau. 402 mul, 246 add, 24 div, 12 sqrt, 12 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int hexapod_6uhs_actuator_rates(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, hexapod_6uhs_real *rates);
 size_t hexapod_6uhs_actuator_rates_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 870 mul, 546 add, 24 div, 12 sqrt,
+/* Accelerations of the actuated joints, in the order of tau. 858 mul, 537 add, 24 div, 12 sqrt,
    12 trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hexapod_6uhs_actuator_accelerations(const hexapod_6uhs_model *model, const hexapod_6uhs_real
     *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, hexapod_6uhs_real *accelerations);

@@ -737,9 +737,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_uhs,
         (inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yy,
@@ -782,9 +782,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_uhs,
         (inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yz,
@@ -1578,11 +1578,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1839,8 +1839,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1848,7 +1848,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1856,11 +1856,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1908,17 +1908,16 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 2577 mul, 1947 add, 24 div, 12 sqrt, 12 trig
+# dynamics: 2514 mul, 1917 add, 24 div, 12 sqrt, 12 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2000,39 +1999,12 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_uhs_xx, M_tt_xy, M_tt_xz, M_tt_uhs_yy, M_tt_yz, M_tt_uhs_zz, M_ta_xx, M_ta_uhs_xy,
         M_ta_uhs_xz, M_ta_uhs_yx, M_ta_t, M_ta_uhs_yz, M_ta_uhs_zx, M_ta_uhs_zy, M_ta_zz,
@@ -2105,6 +2077,8 @@ def _run_dynamics(m, X, V):
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
         uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        # (uhs-q_2) displacement of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -2146,7 +2120,6 @@ def _run_dynamics(m, X, V):
         )
         uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*uhs_s_1)
         # (uhs-qd_2) rate of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
         uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
@@ -2284,19 +2257,20 @@ def _run_dynamics(m, X, V):
         uhs_B_3_o_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x
         uhs_B_3_o_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y
         uhs_B_3_o_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x
+        # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
+        uhs_g_in_axes3_x = (
+        axis_x_uhs_axes3_x*gravity_x + axis_x_uhs_axes3_y*gravity_y + axis_x_uhs_axes3_z*gravity_z
+        )
+        uhs_g_in_axes3_y = (
+        axis_y_uhs_axes3_x*gravity_x + axis_y_uhs_axes3_y*gravity_y + axis_y_uhs_axes3_z*gravity_z
+        )
+        uhs_g_in_axes3_z = (
+        axis_z_uhs_axes3_x*gravity_x + axis_z_uhs_axes3_y*gravity_y + axis_z_uhs_axes3_z*gravity_z
+        )
         # (uhs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        uhs_acc_3_o_in_axes3_x = (
-        uhs_u_1_in_axes3_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
-            axis_x_uhs_axes3_z*gravity_z
-        )
-        uhs_acc_3_o_in_axes3_y = (
-        uhs_u_1_in_axes3_y - axis_y_uhs_axes3_x*gravity_x - axis_y_uhs_axes3_y*gravity_y -
-            axis_y_uhs_axes3_z*gravity_z
-        )
-        uhs_acc_3_o_in_axes3_z = (
-        uhs_u_1_in_axes3_z - axis_z_uhs_axes3_x*gravity_x - axis_z_uhs_axes3_y*gravity_y -
-            axis_z_uhs_axes3_z*gravity_z
-        )
+        uhs_acc_3_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_g_in_axes3_x
+        uhs_acc_3_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_g_in_axes3_y
+        uhs_acc_3_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_g_in_axes3_z
         # (uhs-D_1_3) inertia of joint 3 along joint 1
         uhs_D_1_3 = (
         uhs_J_3_in_spec3_xx*uhs_e_1_in_axes3_z + uhs_J_3_in_spec3_xy*uhs_e_1_in_axes3_x +
@@ -2311,62 +2285,70 @@ def _run_dynamics(m, X, V):
         -uhs_J_2_in_spec2_xz - uhs_J_3_in_spec3_xy*uhs_h_3_t_12 -
             uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_x
         )
-        uhs_Jc_2_in_axes1_yz = (
-        uhs_e_1_in_axes3_z*(uhs_J_2_in_spec2_xy + uhs_J_3_in_axes2_xz) -
-            uhs_c_2*(uhs_Jc_2_t_4*uhs_h_3_t_12 - uhs_J_2_in_spec2_yz -
-            uhs_Jc_2_t_3*uhs_e_2_in_axes3_x)
+        uhs_Jc_2_t_5 = (
+        uhs_c_2*(uhs_Jc_2_t_4*uhs_h_3_t_12 - uhs_J_2_in_spec2_yz -
+            uhs_Jc_2_t_3*uhs_e_2_in_axes3_x) - uhs_e_1_in_axes3_z*(uhs_J_2_in_spec2_xy +
+            uhs_J_3_in_axes2_xz)
         )
+        # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
+        uhs_mu_3_t_2 = uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_t)
+        uhs_mu_3_t_3 = uhs_J_3_in_spec3_xy*(uhs_W_2_t - uhs_mu_3_t)
+        uhs_mu_3_t_4 = uhs_J_3_in_spec3_yz*(uhs_W_2_t - uhs_W_2_t_2)
         # (uhs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        uhs_mu_3_o_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
         uhs_mu_3_o_in_axes3_x = (
-        uhs_B_3_o_in_axes3_yx*uhs_J_3_in_spec3_xy + uhs_B_3_o_in_axes3_zy*uhs_Sigma_3_in_axes3_yy
-            + uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_o_t) +
+        uhs_mu_3_t_2 + uhs_B_3_o_in_axes3_yx*uhs_J_3_in_spec3_xy +
+            uhs_B_3_o_in_axes3_zy*uhs_Sigma_3_in_axes3_yy +
             uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_z -
             uhs_B_3_o_in_axes3_yz*uhs_Sigma_3_in_axes3_zz -
             uhs_B_3_o_in_axes3_zx*uhs_J_3_in_spec3_yz - uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_x
         )
         uhs_mu_3_o_in_axes3_y = (
         uhs_B_3_o_in_axes3_xz*uhs_Sigma_3_in_axes3_zz + uhs_B_3_o_in_axes3_zy*uhs_J_3_in_spec3_yz
-            + uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_x -
+            + uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_x - uhs_mu_3_t_3 -
             uhs_B_3_o_in_axes3_xy*uhs_J_3_in_spec3_xz -
-            uhs_B_3_o_in_axes3_zx*uhs_Sigma_3_in_axes3_xx - uhs_J_3_in_spec3_xy*(uhs_W_2_t -
-            uhs_mu_3_o_t) - uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_y
+            uhs_B_3_o_in_axes3_zx*uhs_Sigma_3_in_axes3_xx -
+            uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_y
         )
         uhs_mu_3_o_in_axes3_z = (
-        uhs_B_3_o_in_axes3_xz*uhs_J_3_in_spec3_xz + uhs_B_3_o_in_axes3_yx*uhs_Sigma_3_in_axes3_xx
-            + uhs_J_3_in_spec3_yz*(uhs_W_2_t - uhs_W_2_t_2) +
+        uhs_mu_3_t_4 + uhs_B_3_o_in_axes3_xz*uhs_J_3_in_spec3_xz +
+            uhs_B_3_o_in_axes3_yx*uhs_Sigma_3_in_axes3_xx +
             uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_y -
             uhs_B_3_o_in_axes3_xy*uhs_Sigma_3_in_axes3_yy -
             uhs_B_3_o_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_z
         )
-        # (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        uhs_mu_2_o_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
-        uhs_mu_2_o_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
-        uhs_mu_2_o_t_3 = uhs_qd_2*uhs_qd_2
-        uhs_mu_2_o_t_4 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
+        # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
+        uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
+        uhs_mu_2_t_6 = uhs_qd_2*uhs_qd_2
+        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
         uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
-        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_o_t_4 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
-        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_o_t_4 - uhs_c_2*uhs_mu_2_t_3
+        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
+        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - uhs_c_2*uhs_mu_2_t_3
+        uhs_mu_2_t_8 = uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 - uhs_mu_2_t_6)
+        uhs_mu_2_t_9 = uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 - uhs_mu_2_t_6)
+        uhs_mu_2_t_10 = uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 - uhs_mu_2_t_5)
+        uhs_mu_2_t_11 = uhs_g_in_axes2_y*uhs_h_2_in_spec2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z
+        uhs_mu_2_t_12 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_y - uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
+        uhs_mu_2_t_13 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_z + uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
+        # (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         uhs_mu_2_o_in_axes2_x = (
-        uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy + uhs_B_2_o_in_axes2_zx*uhs_J_2_in_spec2_xz +
+        uhs_mu_2_t_11 + uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy +
+            uhs_B_2_o_in_axes2_zx*uhs_J_2_in_spec2_xz +
             uhs_B_2_o_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
-            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_x + uhs_g_in_axes2_y*uhs_h_2_in_spec2_y
-            + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z - uhs_J_2_in_spec2_yz*(uhs_mu_2_o_t_2 -
-            uhs_mu_2_o_t_3)
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_x - uhs_mu_2_t_8
         )
         uhs_mu_2_o_in_axes2_y = (
         uhs_B_2_o_in_axes2_xy*uhs_J_2_in_spec2_yz +
-            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
-            - uhs_B_2_o_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
-            uhs_B_2_o_in_axes2_zy*uhs_J_2_in_spec2_xz - uhs_J_2_in_spec2_xy*(uhs_mu_2_o_t -
-            uhs_mu_2_o_t_3) - uhs_g_in_axes2_x*uhs_h_2_in_spec2_y
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_y - uhs_mu_2_t_12 - uhs_mu_2_t_9 -
+            uhs_B_2_o_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
+            uhs_B_2_o_in_axes2_zy*uhs_J_2_in_spec2_xz
         )
         uhs_mu_2_o_in_axes2_z = (
         uhs_B_2_o_in_axes2_yx*uhs_Sigma_2_in_axes2_xx +
-            uhs_J_2_in_spec2_xy*uhs_alpha_1_o_in_axes2_x -
-            uhs_B_2_o_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_o_t -
-            uhs_mu_2_o_t_2) - uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y -
-            uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
+            uhs_J_2_in_spec2_xy*uhs_alpha_1_o_in_axes2_x - uhs_mu_2_t_10 - uhs_mu_2_t_13 -
+            uhs_B_2_o_in_axes2_xy*uhs_Sigma_2_in_axes2_yy -
+            uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y
         )
         # (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z
@@ -2384,48 +2366,43 @@ def _run_dynamics(m, X, V):
             uhs_e_2_in_axes3_x*(uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_x - uhs_Jc_2_t) -
             uhs_h_3_t_12*(uhs_Jc_2_t_2 - uhs_J_3_in_spec3_zz*uhs_h_3_t_12))
         )
-        uhs_d_Gamma_2_t_2 = (
-        inv_uhs_v_1_in_axes2_z*(-uhs_Jc_2_in_axes1_yz - uhs_d_Gamma_2_t*uhs_v_1_t_2)
-        )
+        uhs_d_Gamma_2_t_2 = inv_uhs_v_1_in_axes2_z*(uhs_Jc_2_t_5 - uhs_d_Gamma_2_t*uhs_v_1_t_2)
         uhs_d_Gamma_2_in_axes2_x = uhs_h_3_in_spec2_z + inv_uhs_joint3_pitch*uhs_J_3_in_axes2_xz
         uhs_d_Gamma_2_in_axes2_y = uhs_d_Gamma_2_t + uhs_h_3_in_spec3_x
         uhs_d_Gamma_2_in_axes3_y = (
         uhs_d_Gamma_2_t_2*uhs_h_3_t_12 - uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x
         )
         # (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_in_axes1_yz
+        uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_t_5
         uhs_d_Gamma_1_t_2 = (
         uhs_c_2*(uhs_c_2*(uhs_J_2_in_spec2_zz + uhs_Jc_2_t_3*uhs_h_3_t_12 +
-            uhs_Jc_2_t_4*uhs_e_2_in_axes3_x) - uhs_Jc_2_in_axes2_xy*uhs_e_1_in_axes3_z) +
+            uhs_Jc_2_t_4*uhs_e_2_in_axes3_x) - uhs_Jc_2_in_axes2_xy*uhs_e_1_in_axes3_z) -
             uhs_d_Gamma_1_t*uhs_v_1_t_2 - uhs_e_1_in_axes3_z*(uhs_Jc_2_in_axes2_xy*uhs_c_2 -
             uhs_Jc_2_in_axes2_xx*uhs_e_1_in_axes3_z)
         )
-        uhs_d_Gamma_1_t_3 = inv_uhs_joint3_pitch*uhs_D_1_3
-        uhs_d_Gamma_1_in_axes1_z = uhs_d_Gamma_1_t_3*uhs_e_1_in_axes3_z - uhs_c_2*uhs_d_Gamma_1_t
-        uhs_d_Gamma_1_in_axes1_x = (
-        uhs_c_2*uhs_d_Gamma_1_t_3 + uhs_d_Gamma_1_t*uhs_e_1_in_axes3_z +
-            uhs_h_3_in_spec3_z*uhs_h_3_t_12 - uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_y
-        )
-        uhs_d_Gamma_1_in_axes1_y = (
-        inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2 + uhs_c_2*uhs_h_3_in_spec3_x -
-            uhs_e_1_in_axes3_z*uhs_h_3_in_spec2_z
-        )
-        uhs_d_Gamma_1_in_axes3_z = (
-        uhs_c_2*uhs_d_Gamma_1_in_axes1_x + uhs_d_Gamma_1_in_axes1_z*uhs_e_1_in_axes3_z
-        )
-        uhs_d_Gamma_1_t_4 = (
-        uhs_d_Gamma_1_in_axes1_x*uhs_e_1_in_axes3_z - uhs_c_2*uhs_d_Gamma_1_in_axes1_z
+        uhs_d_Gamma_1_t_3 = inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2
+        uhs_d_Gamma_1_in_axes3_x = (
+        uhs_d_Gamma_1_t*uhs_h_3_t_12 + uhs_d_Gamma_1_t_3*uhs_e_2_in_axes3_x +
+            uhs_e_1_in_axes3_y*uhs_h_3_in_spec3_x - uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_z
         )
         uhs_d_Gamma_1_in_axes3_y = (
-        -uhs_d_Gamma_1_in_axes1_y*uhs_h_3_t_12 - uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_x
+        uhs_d_Gamma_1_t*uhs_e_2_in_axes3_x + uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_y -
+            uhs_d_Gamma_1_t_3*uhs_h_3_t_12 - uhs_e_1_in_axes3_x*uhs_h_3_in_spec3_x
         )
+        uhs_d_Gamma_1_in_axes3_z = (
+        inv_uhs_joint3_pitch*uhs_D_1_3 + uhs_e_1_in_axes3_x*uhs_h_3_in_spec3_z -
+            uhs_e_1_in_axes3_y*uhs_h_3_in_spec3_y
+        )
+        # (uhs-c) leg force on the platform without actuation and without the mass at the connection point
+        uhs_c_t = uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t)
+        uhs_c_t_2 = uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t)
+        uhs_c_t_3 = uhs_W_2_t_3*uhs_h_3_in_spec3_x
         # (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         uhs_d_c_in_axes3_xx = (
         uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_z*uhs_w_1_in_axes3_x -
+            uhs_d_Gamma_1_in_axes3_x*uhs_w_1_in_axes3_x -
             uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x -
             uhs_h_3_t_12*uhs_w_2_in_axes3_x) -
-            uhs_w_1_in_axes3_x*(uhs_d_Gamma_1_in_axes1_y*uhs_e_2_in_axes3_x -
-            uhs_d_Gamma_1_t_4*uhs_h_3_t_12) -
             uhs_w_2_in_axes3_x*(-uhs_d_Gamma_2_in_axes2_y*uhs_h_3_t_12 -
             uhs_d_Gamma_2_t_2*uhs_e_2_in_axes3_x)
         )
@@ -2450,17 +2427,15 @@ def _run_dynamics(m, X, V):
             uhs_N_2_o_in_axes2_y*uhs_c_2)
         )
         uhs_c_o_in_axes3_x = (
-        uhs_c_o_t*uhs_h_3_t_12 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_o_t) -
-            uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z - uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x -
-            uhs_c_o_t_2*uhs_e_2_in_axes3_x
+        uhs_c_t + uhs_c_o_t*uhs_h_3_t_12 - uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z -
+            uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_o_t_2*uhs_e_2_in_axes3_x
         )
         uhs_c_o_in_axes3_y = (
-        uhs_c_o_t*uhs_e_2_in_axes3_x + uhs_c_o_t_2*uhs_h_3_t_12 + uhs_h_3_in_spec3_z*(uhs_W_2_t +
-            uhs_mu_3_o_t) - uhs_B_3_o_in_axes3_yx*uhs_h_3_in_spec3_y -
-            uhs_B_3_o_in_axes3_yz*uhs_h_3_in_spec3_x
+        uhs_c_t_2 + uhs_c_o_t*uhs_e_2_in_axes3_x + uhs_c_o_t_2*uhs_h_3_t_12 -
+            uhs_B_3_o_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_yz*uhs_h_3_in_spec3_x
         )
         uhs_c_o_in_axes3_z = (
-        uhs_W_2_t_3*uhs_h_3_in_spec3_x - inv_uhs_joint3_pitch*uhs_mu_3_o_in_axes3_z -
+        uhs_c_t_3 - inv_uhs_joint3_pitch*uhs_mu_3_o_in_axes3_z -
             uhs_B_3_o_in_axes3_zx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_zy*uhs_h_3_in_spec3_z
         )
         # (uhs-Q) inertia of the leg at the connection point, without the mass gathered there
@@ -2669,7 +2644,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 1347 mul, 957 add, 24 div, 12 sqrt, 12 trig
+# M: 1311 mul, 945 add, 24 div, 12 sqrt, 12 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -2805,6 +2780,8 @@ def _run_M(m, X):
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
         uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        # (uhs-q_2) displacement of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
         # (uhs-v_1) velocity of the connection point per rate of joint 1
         uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
         uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
@@ -2821,8 +2798,36 @@ def _run_M(m, X):
         uhs_w_2_t = inv_uhs_h_3_t_9*inv_uhs_v_1_in_axes2_z*uhs_v_1_t_2
         uhs_w_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_w_2_t - inv_uhs_h_3_t_9*uhs_h_3_t_12
         uhs_w_2_in_axes3_y = -inv_uhs_h_3_t_9*uhs_e_2_in_axes3_x - uhs_h_3_t_12*uhs_w_2_t
+        # (uhs-w_3) reciprocal vector 3
+        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
+        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
+        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        # (uhs-u_1) centripetal acceleration of the connection point
+        uhs_u_1_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
+        uhs_u_1_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_c_1*uhs_u_1_t
+        uhs_u_1_t_3 = -uhs_c_1*uhs_h_3_t_12 - uhs_s_1*uhs_u_1_t
+        axis_y_uhs_axes3_x = (
+        uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
+            uhs_base_frame_xz*uhs_e_1_in_axes3_y
+        )
+        axis_y_uhs_axes3_y = (
+        uhs_base_frame_yx*uhs_u_1_t_2 + uhs_base_frame_yy*uhs_u_1_t_3 +
+            uhs_base_frame_yz*uhs_e_1_in_axes3_y
+        )
+        axis_y_uhs_axes3_z = (
+        uhs_base_frame_zx*uhs_u_1_t_2 + uhs_base_frame_zy*uhs_u_1_t_3 +
+            uhs_base_frame_zz*uhs_e_1_in_axes3_y
+        )
+        axis_x_uhs_axes3_x = (
+        axis_y_uhs_axes3_y*axis_z_uhs_axes3_z - axis_y_uhs_axes3_z*axis_z_uhs_axes3_y
+        )
+        axis_x_uhs_axes3_y = (
+        axis_y_uhs_axes3_z*axis_z_uhs_axes3_x - axis_y_uhs_axes3_x*axis_z_uhs_axes3_z
+        )
+        axis_x_uhs_axes3_z = (
+        axis_y_uhs_axes3_x*axis_z_uhs_axes3_y - axis_y_uhs_axes3_y*axis_z_uhs_axes3_x
+        )
         # (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
         uhs_d_alpha_3_in_axes3_zy = uhs_e_1_in_axes3_z*uhs_w_1_in_axes3_y
         # (uhs-D_1_3) inertia of joint 3 along joint 1
         uhs_D_1_3 = (
@@ -2838,10 +2843,10 @@ def _run_M(m, X):
         -uhs_J_2_in_spec2_xz - uhs_J_3_in_spec3_xy*uhs_h_3_t_12 -
             uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_x
         )
-        uhs_Jc_2_in_axes1_yz = (
-        uhs_e_1_in_axes3_z*(uhs_J_2_in_spec2_xy + uhs_J_3_in_axes2_xz) -
-            uhs_c_2*(uhs_Jc_2_t_4*uhs_h_3_t_12 - uhs_J_2_in_spec2_yz -
-            uhs_Jc_2_t_3*uhs_e_2_in_axes3_x)
+        uhs_Jc_2_t_5 = (
+        uhs_c_2*(uhs_Jc_2_t_4*uhs_h_3_t_12 - uhs_J_2_in_spec2_yz -
+            uhs_Jc_2_t_3*uhs_e_2_in_axes3_x) - uhs_e_1_in_axes3_z*(uhs_J_2_in_spec2_xy +
+            uhs_J_3_in_axes2_xz)
         )
         # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         uhs_d_Gamma_2_t = (
@@ -2849,48 +2854,39 @@ def _run_M(m, X):
             uhs_e_2_in_axes3_x*(uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_x - uhs_Jc_2_t) -
             uhs_h_3_t_12*(uhs_Jc_2_t_2 - uhs_J_3_in_spec3_zz*uhs_h_3_t_12))
         )
-        uhs_d_Gamma_2_t_2 = (
-        inv_uhs_v_1_in_axes2_z*(-uhs_Jc_2_in_axes1_yz - uhs_d_Gamma_2_t*uhs_v_1_t_2)
-        )
+        uhs_d_Gamma_2_t_2 = inv_uhs_v_1_in_axes2_z*(uhs_Jc_2_t_5 - uhs_d_Gamma_2_t*uhs_v_1_t_2)
         uhs_d_Gamma_2_in_axes2_x = uhs_h_3_in_spec2_z + inv_uhs_joint3_pitch*uhs_J_3_in_axes2_xz
         uhs_d_Gamma_2_in_axes2_y = uhs_d_Gamma_2_t + uhs_h_3_in_spec3_x
         uhs_d_Gamma_2_in_axes3_y = (
         uhs_d_Gamma_2_t_2*uhs_h_3_t_12 - uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x
         )
         # (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_in_axes1_yz
+        uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_t_5
         uhs_d_Gamma_1_t_2 = (
         uhs_c_2*(uhs_c_2*(uhs_J_2_in_spec2_zz + uhs_Jc_2_t_3*uhs_h_3_t_12 +
-            uhs_Jc_2_t_4*uhs_e_2_in_axes3_x) - uhs_Jc_2_in_axes2_xy*uhs_e_1_in_axes3_z) +
+            uhs_Jc_2_t_4*uhs_e_2_in_axes3_x) - uhs_Jc_2_in_axes2_xy*uhs_e_1_in_axes3_z) -
             uhs_d_Gamma_1_t*uhs_v_1_t_2 - uhs_e_1_in_axes3_z*(uhs_Jc_2_in_axes2_xy*uhs_c_2 -
             uhs_Jc_2_in_axes2_xx*uhs_e_1_in_axes3_z)
         )
-        uhs_d_Gamma_1_t_3 = inv_uhs_joint3_pitch*uhs_D_1_3
-        uhs_d_Gamma_1_in_axes1_z = uhs_d_Gamma_1_t_3*uhs_e_1_in_axes3_z - uhs_c_2*uhs_d_Gamma_1_t
-        uhs_d_Gamma_1_in_axes1_x = (
-        uhs_c_2*uhs_d_Gamma_1_t_3 + uhs_d_Gamma_1_t*uhs_e_1_in_axes3_z +
-            uhs_h_3_in_spec3_z*uhs_h_3_t_12 - uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_y
-        )
-        uhs_d_Gamma_1_in_axes1_y = (
-        inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2 + uhs_c_2*uhs_h_3_in_spec3_x -
-            uhs_e_1_in_axes3_z*uhs_h_3_in_spec2_z
-        )
-        uhs_d_Gamma_1_in_axes3_z = (
-        uhs_c_2*uhs_d_Gamma_1_in_axes1_x + uhs_d_Gamma_1_in_axes1_z*uhs_e_1_in_axes3_z
-        )
-        uhs_d_Gamma_1_t_4 = (
-        uhs_d_Gamma_1_in_axes1_x*uhs_e_1_in_axes3_z - uhs_c_2*uhs_d_Gamma_1_in_axes1_z
+        uhs_d_Gamma_1_t_3 = inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2
+        uhs_d_Gamma_1_in_axes3_x = (
+        uhs_d_Gamma_1_t*uhs_h_3_t_12 + uhs_d_Gamma_1_t_3*uhs_e_2_in_axes3_x +
+            uhs_e_1_in_axes3_y*uhs_h_3_in_spec3_x - uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_z
         )
         uhs_d_Gamma_1_in_axes3_y = (
-        -uhs_d_Gamma_1_in_axes1_y*uhs_h_3_t_12 - uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_x
+        uhs_d_Gamma_1_t*uhs_e_2_in_axes3_x + uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_y -
+            uhs_d_Gamma_1_t_3*uhs_h_3_t_12 - uhs_e_1_in_axes3_x*uhs_h_3_in_spec3_x
+        )
+        uhs_d_Gamma_1_in_axes3_z = (
+        inv_uhs_joint3_pitch*uhs_D_1_3 + uhs_e_1_in_axes3_x*uhs_h_3_in_spec3_z -
+            uhs_e_1_in_axes3_y*uhs_h_3_in_spec3_y
         )
         # (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         uhs_d_c_in_axes3_xx = (
         uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_z*uhs_w_1_in_axes3_x -
+            uhs_d_Gamma_1_in_axes3_x*uhs_w_1_in_axes3_x -
             uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x -
             uhs_h_3_t_12*uhs_w_2_in_axes3_x) -
-            uhs_w_1_in_axes3_x*(uhs_d_Gamma_1_in_axes1_y*uhs_e_2_in_axes3_x -
-            uhs_d_Gamma_1_t_4*uhs_h_3_t_12) -
             uhs_w_2_in_axes3_x*(-uhs_d_Gamma_2_in_axes2_y*uhs_h_3_t_12 -
             uhs_d_Gamma_2_t_2*uhs_e_2_in_axes3_x)
         )
@@ -2909,76 +2905,49 @@ def _run_M(m, X):
             uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_y
         )
         # (uhs-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
-        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
-        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
-        uhs_Q_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
-        uhs_Q_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_Q_t*uhs_c_1
-        uhs_Q_t_3 = -uhs_Q_t*uhs_s_1 - uhs_c_1*uhs_h_3_t_12
-        axis_y_uhs_axes3_x = (
-        uhs_Q_t_2*uhs_base_frame_xx + uhs_Q_t_3*uhs_base_frame_xy +
-            uhs_base_frame_xz*uhs_e_1_in_axes3_y
-        )
-        axis_y_uhs_axes3_y = (
-        uhs_Q_t_2*uhs_base_frame_yx + uhs_Q_t_3*uhs_base_frame_yy +
-            uhs_base_frame_yz*uhs_e_1_in_axes3_y
-        )
-        axis_y_uhs_axes3_z = (
-        uhs_Q_t_2*uhs_base_frame_zx + uhs_Q_t_3*uhs_base_frame_zy +
-            uhs_base_frame_zz*uhs_e_1_in_axes3_y
-        )
-        axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_y*axis_z_uhs_axes3_z - axis_y_uhs_axes3_z*axis_z_uhs_axes3_y
-        )
-        axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_z*axis_z_uhs_axes3_x - axis_y_uhs_axes3_x*axis_z_uhs_axes3_z
-        )
-        axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_x*axis_z_uhs_axes3_y - axis_y_uhs_axes3_y*axis_z_uhs_axes3_x
-        )
-        uhs_Q_t_4 = (
+        uhs_Q_t = (
         uhs_d_c_in_axes3_xx + uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y +
             uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y +
             uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_y -
             uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
             uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y)
         )
-        uhs_Q_t_5 = 0.5*uhs_Q_t_4
-        uhs_Q_t_6 = uhs_d_G_in_axes3_zz + uhs_d_c_in_axes3_xx
-        uhs_Q_t_7 = 0.5*uhs_Q_t_6
-        uhs_Q_t_8 = (
+        uhs_Q_t_2 = 0.5*uhs_Q_t
+        uhs_Q_t_3 = uhs_d_G_in_axes3_zz + uhs_d_c_in_axes3_xx
+        uhs_Q_t_4 = 0.5*uhs_Q_t_3
+        uhs_Q_t_5 = (
         axis_x_uhs_axes3_x*uhs_d_c_in_axes3_xy + axis_z_uhs_axes3_x*uhs_d_c_in_axes3_yz -
-            axis_y_uhs_axes3_x*uhs_Q_t_5
+            axis_y_uhs_axes3_x*uhs_Q_t_2
         )
-        uhs_Q_t_9 = (
+        uhs_Q_t_6 = (
         axis_x_uhs_axes3_y*uhs_d_c_in_axes3_xy + axis_z_uhs_axes3_y*uhs_d_c_in_axes3_yz -
-            axis_y_uhs_axes3_y*uhs_Q_t_5
+            axis_y_uhs_axes3_y*uhs_Q_t_2
         )
-        uhs_Q_t_10 = (
+        uhs_Q_t_7 = (
         axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xy + axis_z_uhs_axes3_z*uhs_d_c_in_axes3_yz -
-            axis_y_uhs_axes3_z*uhs_Q_t_5
+            axis_y_uhs_axes3_z*uhs_Q_t_2
         )
-        uhs_Q_t_11 = axis_z_uhs_axes3_x*uhs_Q_t_7 - axis_x_uhs_axes3_x*uhs_d_c_in_axes3_xz
-        uhs_Q_t_12 = axis_z_uhs_axes3_y*uhs_Q_t_7 - axis_x_uhs_axes3_y*uhs_d_c_in_axes3_xz
-        uhs_Q_t_13 = axis_z_uhs_axes3_z*uhs_Q_t_7 - axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xz
-        uhs_Q_t_14 = axis_y_uhs_axes3_x*uhs_Q_t_8 - axis_z_uhs_axes3_x*uhs_Q_t_11
-        uhs_Q_xx = -2.0*uhs_Q_t_14 - uhs_d_c_in_axes3_xx
+        uhs_Q_t_8 = axis_z_uhs_axes3_x*uhs_Q_t_4 - axis_x_uhs_axes3_x*uhs_d_c_in_axes3_xz
+        uhs_Q_t_9 = axis_z_uhs_axes3_y*uhs_Q_t_4 - axis_x_uhs_axes3_y*uhs_d_c_in_axes3_xz
+        uhs_Q_t_10 = axis_z_uhs_axes3_z*uhs_Q_t_4 - axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xz
+        uhs_Q_t_11 = axis_y_uhs_axes3_x*uhs_Q_t_5 - axis_z_uhs_axes3_x*uhs_Q_t_8
+        uhs_Q_xx = -2.0*uhs_Q_t_11 - uhs_d_c_in_axes3_xx
         uhs_Q_xy = (
-        axis_z_uhs_axes3_x*uhs_Q_t_12 + axis_z_uhs_axes3_y*uhs_Q_t_11 -
-            axis_y_uhs_axes3_x*uhs_Q_t_9 - axis_y_uhs_axes3_y*uhs_Q_t_8
+        axis_z_uhs_axes3_x*uhs_Q_t_9 + axis_z_uhs_axes3_y*uhs_Q_t_8 - axis_y_uhs_axes3_x*uhs_Q_t_6
+            - axis_y_uhs_axes3_y*uhs_Q_t_5
         )
         uhs_Q_xz = (
-        axis_z_uhs_axes3_x*uhs_Q_t_13 + axis_z_uhs_axes3_z*uhs_Q_t_11 -
-            axis_y_uhs_axes3_x*uhs_Q_t_10 - axis_y_uhs_axes3_z*uhs_Q_t_8
+        axis_z_uhs_axes3_x*uhs_Q_t_10 + axis_z_uhs_axes3_z*uhs_Q_t_8 -
+            axis_y_uhs_axes3_x*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_5
         )
-        uhs_Q_t_15 = axis_y_uhs_axes3_y*uhs_Q_t_9 - axis_z_uhs_axes3_y*uhs_Q_t_12
-        uhs_Q_yy = -2.0*uhs_Q_t_15 - uhs_d_c_in_axes3_xx
+        uhs_Q_t_12 = axis_y_uhs_axes3_y*uhs_Q_t_6 - axis_z_uhs_axes3_y*uhs_Q_t_9
+        uhs_Q_yy = -2.0*uhs_Q_t_12 - uhs_d_c_in_axes3_xx
         uhs_Q_yz = (
-        axis_z_uhs_axes3_y*uhs_Q_t_13 + axis_z_uhs_axes3_z*uhs_Q_t_12 -
-            axis_y_uhs_axes3_y*uhs_Q_t_10 - axis_y_uhs_axes3_z*uhs_Q_t_9
+        axis_z_uhs_axes3_y*uhs_Q_t_10 + axis_z_uhs_axes3_z*uhs_Q_t_9 -
+            axis_y_uhs_axes3_y*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_6
         )
-        uhs_Q_t_16 = axis_y_uhs_axes3_z*uhs_Q_t_10 - axis_z_uhs_axes3_z*uhs_Q_t_13
-        uhs_Q_zz = -2.0*uhs_Q_t_16 - uhs_d_c_in_axes3_xx
+        uhs_Q_t_13 = axis_y_uhs_axes3_z*uhs_Q_t_7 - axis_z_uhs_axes3_z*uhs_Q_t_10
+        uhs_Q_zz = -2.0*uhs_Q_t_13 - uhs_d_c_in_axes3_xx
         # (M_ta) coupling block of M
         uhs_M_ta_t = -uhs_Q_xy*uhs_q_z
         uhs_M_ta_t_2 = uhs_Q_xz*uhs_q_y
@@ -3088,16 +3057,16 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1563 mul, 1188 add, 24 div, 12 sqrt, 12 trig
+# Z: 1572 mul, 1194 add, 24 div, 12 sqrt, 12 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3153,6 +3122,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3161,39 +3146,12 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_uhs_x, Z_t_uhs_y, Z_t_uhs_z, Z_a_uhs_x, Z_a_uhs_y, Z_a_uhs_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -3210,7 +3168,7 @@ def _run_Z(m, X, V):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-S) from the base point to the connection point
+        # (uhs-h_3) first moment of link 3 about the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -3220,42 +3178,40 @@ def _run_Z(m, X, V):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        uhs_S_in_turn1_x = (
-        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
+        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
+        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
+        uhs_h_3_t_4 = (
+        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
+            uhs_base_frame_zx*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_y = (
-        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        uhs_h_3_t_5 = (
+        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
+            uhs_base_frame_zy*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        uhs_h_3_t_6 = (
+        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
+            uhs_base_frame_zz*uhs_h_3_t_3
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
+        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
+        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
+        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
+        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
+        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
+        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
+        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
+        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
+        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
-        # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
-        # (uhs-root_2) root, with the sign of the branch
-        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
-        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = cos(uhs_q_3_t)
-        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = -sin(uhs_q_3_t)
+        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
+        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        # (uhs-q_2) displacement of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -3264,13 +3220,21 @@ def _run_Z(m, X, V):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
-        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
-        uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3
-        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
-        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
-        # (uhs-qd_1) rate of joint 1
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
+        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
+        # (uhs-w_1) reciprocal vector 1
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
+        # (uhs-w_2) reciprocal vector 2
+        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
+        # (uhs-w_3) reciprocal vector 3
+        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
+        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
+        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        # (uhs-qd_1) rate of joint 1
         uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
             uhs_S_dot_z*uhs_base_frame_zx
@@ -3281,15 +3245,13 @@ def _run_Z(m, X, V):
         )
         uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*uhs_s_1)
         # (uhs-qd_2) rate of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
-        inv_uhs_root_2 = 1.0/uhs_root_2
         uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
         uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+        inv_uhs_h_3_t_9*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
             uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
@@ -3298,8 +3260,10 @@ def _run_Z(m, X, V):
         uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
         uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
-        uhs_omega_2_in_axes3_y = -uhs_c_3*uhs_omega_1_in_axes2_y - uhs_qd_2*uhs_s_3
+        uhs_omega_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_qd_2 - uhs_h_3_t_12*uhs_omega_1_in_axes2_y
+        uhs_omega_2_in_axes3_y = (
+        -uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y - uhs_h_3_t_12*uhs_qd_2
+        )
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
         uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
@@ -3314,12 +3278,9 @@ def _run_Z(m, X, V):
         uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
         uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
         # (uhs-u_1) centripetal acceleration of the connection point
-        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
-        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
-        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
-        uhs_u_1_t = uhs_c_3*uhs_e_1_in_axes3_z
-        uhs_u_1_t_2 = uhs_s_1*uhs_s_3 - uhs_c_1*uhs_u_1_t
-        uhs_u_1_t_3 = -uhs_c_1*uhs_s_3 - uhs_s_1*uhs_u_1_t
+        uhs_u_1_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
+        uhs_u_1_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_c_1*uhs_u_1_t
+        uhs_u_1_t_3 = -uhs_c_1*uhs_h_3_t_12 - uhs_s_1*uhs_u_1_t
         axis_y_uhs_axes3_x = (
         uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
             uhs_base_frame_xz*uhs_e_1_in_axes3_y
@@ -3354,8 +3315,8 @@ def _run_Z(m, X, V):
         axis_z_uhs_axes3_x*uhs_u_1_x + axis_z_uhs_axes3_y*uhs_u_1_y + axis_z_uhs_axes3_z*uhs_u_1_z
         )
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_s_3
-        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_c_3
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_h_3_t_12
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
         # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
         uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
@@ -3365,28 +3326,29 @@ def _run_Z(m, X, V):
         # (uhs-bias) acceleration of the connection point at zero joint accelerations
         uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
         uhs_bias_in_axes3_x = (
-        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
-            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
-            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_h_3_t_10*(uhs_W_3_in_axes3_xz +
+            uhs_beta_3_in_axes3_y) + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x)
         )
         uhs_bias_in_axes3_y = (
-        uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
-            uhs_zeta_2_in_axes3_x) + uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz -
-            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        uhs_h_3_t_10*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) +
+            uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
-        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
+        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_h_3_t_10 - uhs_W_2_t_3*uhs_joint3_offset_x
         # (uhs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_bias_in_axes3_x
         uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_bias_in_axes3_y
         uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1_o) remainder of: acceleration of joint 1
         uhs_qdd_1_o = (
-        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_o_in_axes3_x - uhs_rel_o_in_axes3_y*uhs_s_3)
+        inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x -
+            uhs_h_3_t_12*uhs_rel_o_in_axes3_y)
         )
         # (uhs-qdd_2_o) remainder of: acceleration of joint 2
         uhs_qdd_2_o = (
-        inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_t_2 - uhs_c_3*uhs_rel_o_in_axes3_y -
-            uhs_rel_o_in_axes3_x*uhs_s_3)
+        inv_uhs_h_3_t_9*(uhs_qdd_1_o*uhs_v_1_t_2 - uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y -
+            uhs_h_3_t_12*uhs_rel_o_in_axes3_x)
         )
         # (uhs-alpha_1_o) remainder of: angular acceleration of link 1
         uhs_alpha_1_o_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qdd_1_o
@@ -3401,10 +3363,12 @@ def _run_Z(m, X, V):
         uhs_B_2_o_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x
         # (uhs-alpha_3_o) remainder of: angular acceleration of link 3
         uhs_alpha_3_o_in_axes3_x = (
-        uhs_zeta_3_in_axes3_x + uhs_c_3*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*uhs_s_3
+        uhs_zeta_3_in_axes3_x + uhs_e_2_in_axes3_x*uhs_qdd_2_o -
+            uhs_alpha_2_o_in_axes2_y*uhs_h_3_t_12
         )
         uhs_alpha_3_o_in_axes3_y = (
-        uhs_zeta_3_in_axes3_y - uhs_alpha_2_o_in_axes2_y*uhs_c_3 - uhs_qdd_2_o*uhs_s_3
+        uhs_zeta_3_in_axes3_y - uhs_alpha_2_o_in_axes2_y*uhs_e_2_in_axes3_x -
+            uhs_h_3_t_12*uhs_qdd_2_o
         )
         uhs_alpha_3_o_in_axes3_z = (
         uhs_alpha_2_o_in_axes2_x + inv_uhs_joint3_pitch*uhs_rel_o_in_axes3_z
@@ -3416,96 +3380,110 @@ def _run_Z(m, X, V):
         uhs_B_3_o_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x
         uhs_B_3_o_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y
         uhs_B_3_o_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x
+        # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
+        uhs_g_in_axes3_x = (
+        axis_x_uhs_axes3_x*gravity_x + axis_x_uhs_axes3_y*gravity_y + axis_x_uhs_axes3_z*gravity_z
+        )
+        uhs_g_in_axes3_y = (
+        axis_y_uhs_axes3_x*gravity_x + axis_y_uhs_axes3_y*gravity_y + axis_y_uhs_axes3_z*gravity_z
+        )
+        uhs_g_in_axes3_z = (
+        axis_z_uhs_axes3_x*gravity_x + axis_z_uhs_axes3_y*gravity_y + axis_z_uhs_axes3_z*gravity_z
+        )
         # (uhs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        uhs_acc_3_o_in_axes3_x = (
-        uhs_u_1_in_axes3_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
-            axis_x_uhs_axes3_z*gravity_z
-        )
-        uhs_acc_3_o_in_axes3_y = (
-        uhs_u_1_in_axes3_y - axis_y_uhs_axes3_x*gravity_x - axis_y_uhs_axes3_y*gravity_y -
-            axis_y_uhs_axes3_z*gravity_z
-        )
-        uhs_acc_3_o_in_axes3_z = (
-        uhs_u_1_in_axes3_z - axis_z_uhs_axes3_x*gravity_x - axis_z_uhs_axes3_y*gravity_y -
-            axis_z_uhs_axes3_z*gravity_z
-        )
+        uhs_acc_3_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_g_in_axes3_x
+        uhs_acc_3_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_g_in_axes3_y
+        uhs_acc_3_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_g_in_axes3_z
+        # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
+        uhs_mu_3_t_2 = uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_t)
+        uhs_mu_3_t_3 = uhs_J_3_in_spec3_xy*(uhs_W_2_t - uhs_mu_3_t)
+        uhs_mu_3_t_4 = uhs_J_3_in_spec3_yz*(uhs_W_2_t - uhs_W_2_t_2)
         # (uhs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        uhs_mu_3_o_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
         uhs_mu_3_o_in_axes3_x = (
-        uhs_B_3_o_in_axes3_yx*uhs_J_3_in_spec3_xy + uhs_B_3_o_in_axes3_zy*uhs_Sigma_3_in_axes3_yy
-            + uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_o_t) +
+        uhs_mu_3_t_2 + uhs_B_3_o_in_axes3_yx*uhs_J_3_in_spec3_xy +
+            uhs_B_3_o_in_axes3_zy*uhs_Sigma_3_in_axes3_yy +
             uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_z -
             uhs_B_3_o_in_axes3_yz*uhs_Sigma_3_in_axes3_zz -
             uhs_B_3_o_in_axes3_zx*uhs_J_3_in_spec3_yz - uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_x
         )
         uhs_mu_3_o_in_axes3_y = (
         uhs_B_3_o_in_axes3_xz*uhs_Sigma_3_in_axes3_zz + uhs_B_3_o_in_axes3_zy*uhs_J_3_in_spec3_yz
-            + uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_x -
+            + uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_x - uhs_mu_3_t_3 -
             uhs_B_3_o_in_axes3_xy*uhs_J_3_in_spec3_xz -
-            uhs_B_3_o_in_axes3_zx*uhs_Sigma_3_in_axes3_xx - uhs_J_3_in_spec3_xy*(uhs_W_2_t -
-            uhs_mu_3_o_t) - uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_y
+            uhs_B_3_o_in_axes3_zx*uhs_Sigma_3_in_axes3_xx -
+            uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_y
         )
         uhs_mu_3_o_in_axes3_z = (
-        uhs_B_3_o_in_axes3_xz*uhs_J_3_in_spec3_xz + uhs_B_3_o_in_axes3_yx*uhs_Sigma_3_in_axes3_xx
-            + uhs_J_3_in_spec3_yz*(uhs_W_2_t - uhs_W_2_t_2) +
+        uhs_mu_3_t_4 + uhs_B_3_o_in_axes3_xz*uhs_J_3_in_spec3_xz +
+            uhs_B_3_o_in_axes3_yx*uhs_Sigma_3_in_axes3_xx +
             uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_y -
             uhs_B_3_o_in_axes3_xy*uhs_Sigma_3_in_axes3_yy -
             uhs_B_3_o_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_z
         )
-        # (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        uhs_mu_2_o_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
-        uhs_mu_2_o_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
-        uhs_mu_2_o_t_3 = uhs_qd_2*uhs_qd_2
-        uhs_mu_2_o_t_4 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
+        # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
+        uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
+        uhs_mu_2_t_6 = uhs_qd_2*uhs_qd_2
+        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
         uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
-        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_o_t_4 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
-        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_o_t_4 - uhs_c_2*uhs_mu_2_t_3
+        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
+        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - uhs_c_2*uhs_mu_2_t_3
+        uhs_mu_2_t_8 = uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 - uhs_mu_2_t_6)
+        uhs_mu_2_t_9 = uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 - uhs_mu_2_t_6)
+        uhs_mu_2_t_10 = uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 - uhs_mu_2_t_5)
+        uhs_mu_2_t_11 = uhs_g_in_axes2_y*uhs_h_2_in_spec2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z
+        uhs_mu_2_t_12 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_y - uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
+        uhs_mu_2_t_13 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_z + uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
+        # (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         uhs_mu_2_o_in_axes2_x = (
-        uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy + uhs_B_2_o_in_axes2_zx*uhs_J_2_in_spec2_xz +
+        uhs_mu_2_t_11 + uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy +
+            uhs_B_2_o_in_axes2_zx*uhs_J_2_in_spec2_xz +
             uhs_B_2_o_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
-            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_x + uhs_g_in_axes2_y*uhs_h_2_in_spec2_y
-            + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z - uhs_J_2_in_spec2_yz*(uhs_mu_2_o_t_2 -
-            uhs_mu_2_o_t_3)
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_x - uhs_mu_2_t_8
         )
         uhs_mu_2_o_in_axes2_y = (
         uhs_B_2_o_in_axes2_xy*uhs_J_2_in_spec2_yz +
-            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
-            - uhs_B_2_o_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
-            uhs_B_2_o_in_axes2_zy*uhs_J_2_in_spec2_xz - uhs_J_2_in_spec2_xy*(uhs_mu_2_o_t -
-            uhs_mu_2_o_t_3) - uhs_g_in_axes2_x*uhs_h_2_in_spec2_y
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_y - uhs_mu_2_t_12 - uhs_mu_2_t_9 -
+            uhs_B_2_o_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
+            uhs_B_2_o_in_axes2_zy*uhs_J_2_in_spec2_xz
         )
         uhs_mu_2_o_in_axes2_z = (
         uhs_B_2_o_in_axes2_yx*uhs_Sigma_2_in_axes2_xx +
-            uhs_J_2_in_spec2_xy*uhs_alpha_1_o_in_axes2_x -
-            uhs_B_2_o_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_o_t -
-            uhs_mu_2_o_t_2) - uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y -
-            uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
+            uhs_J_2_in_spec2_xy*uhs_alpha_1_o_in_axes2_x - uhs_mu_2_t_10 - uhs_mu_2_t_13 -
+            uhs_B_2_o_in_axes2_xy*uhs_Sigma_2_in_axes2_yy -
+            uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y
         )
         # (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z
         uhs_N_2_o_in_axes2_y = (
-        uhs_mu_2_o_in_axes2_y - uhs_c_3*uhs_mu_3_o_in_axes3_y - uhs_mu_3_o_in_axes3_x*uhs_s_3
+        uhs_mu_2_o_in_axes2_y - uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y -
+            uhs_h_3_t_12*uhs_mu_3_o_in_axes3_x
         )
         uhs_N_2_o_in_axes2_z = (
-        uhs_mu_2_o_in_axes2_z + uhs_c_3*uhs_mu_3_o_in_axes3_x - uhs_mu_3_o_in_axes3_y*uhs_s_3
+        uhs_mu_2_o_in_axes2_z + uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_x -
+            uhs_h_3_t_12*uhs_mu_3_o_in_axes3_y
         )
+        # (uhs-c) leg force on the platform without actuation and without the mass at the connection point
+        uhs_c_t = uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t)
+        uhs_c_t_2 = uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t)
+        uhs_c_t_3 = uhs_W_2_t_3*uhs_h_3_in_spec3_x
         # (uhs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
-        uhs_c_o_t = inv_uhs_root_2*uhs_N_2_o_in_axes2_z
+        uhs_c_o_t = inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z
         uhs_c_o_t_2 = (
         inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_o_t*uhs_v_1_t_2 -
             uhs_N_2_o_in_axes2_y*uhs_c_2)
         )
         uhs_c_o_in_axes3_x = (
-        uhs_c_o_t*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_o_t) -
-            uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z - uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x -
-            uhs_c_3*uhs_c_o_t_2
+        uhs_c_t + uhs_c_o_t*uhs_h_3_t_12 - uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z -
+            uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_o_t_2*uhs_e_2_in_axes3_x
         )
         uhs_c_o_in_axes3_y = (
-        uhs_c_3*uhs_c_o_t + uhs_c_o_t_2*uhs_s_3 + uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_o_t) -
+        uhs_c_t_2 + uhs_c_o_t*uhs_e_2_in_axes3_x + uhs_c_o_t_2*uhs_h_3_t_12 -
             uhs_B_3_o_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_yz*uhs_h_3_in_spec3_x
         )
         uhs_c_o_in_axes3_z = (
-        uhs_W_2_t_3*uhs_h_3_in_spec3_x - inv_uhs_joint3_pitch*uhs_mu_3_o_in_axes3_z -
+        uhs_c_t_3 - inv_uhs_joint3_pitch*uhs_mu_3_o_in_axes3_z -
             uhs_B_3_o_in_axes3_zx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_zy*uhs_h_3_in_spec3_z
         )
         # (uhs-U) velocity and gravity terms of the leg force
@@ -3526,8 +3504,8 @@ def _run_Z(m, X, V):
         uhs_Z_a_t_2 = uhs_U_x*uhs_q_z - uhs_U_z*uhs_q_x
         uhs_Z_a_t_3 = uhs_U_y*uhs_q_x - uhs_U_x*uhs_q_y
         ok = (
-        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
+        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (Z_t) translational part of Z
@@ -3606,7 +3584,7 @@ def _run_H(m, X):
             uhs_base_point_z, uhs_branch_2, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-S) from the base point to the connection point
+        # (uhs-h_3) first moment of link 3 about the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -3616,36 +3594,40 @@ def _run_H(m, X):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        uhs_S_in_turn1_x = (
-        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
+        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
+        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
+        uhs_h_3_t_4 = (
+        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
+            uhs_base_frame_zx*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_y = (
-        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        uhs_h_3_t_5 = (
+        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
+            uhs_base_frame_zy*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        uhs_h_3_t_6 = (
+        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
+            uhs_base_frame_zz*uhs_h_3_t_3
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
-        # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
-        # (uhs-root_2) root, with the sign of the branch
-        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
+        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
+        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
+        # (uhs-w_2) reciprocal vector 2
+        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
         # (uhs-w_3) reciprocal vector 3
-        inv_uhs_root_2 = 1.0/uhs_root_2
-        uhs_w_3_x = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_x
-        uhs_w_3_y = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_y
-        uhs_w_3_z = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_z
+        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
+        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
+        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch
+        uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch
+        uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch
         # (uhs-H_a_3) moment of the column's unit force about the platform origin
         uhs_H_a_3_x = uhs_q_y*uhs_w_3_z - uhs_q_z*uhs_w_3_y
         uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z
         uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x
         ok = (
-        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size)
+        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size)
         )
         # (uhs-w_3) reciprocal vector 3
         out_H[_H_uhs[0][leg]] = uhs_w_3_x
@@ -3658,7 +3640,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1677 mul, 1287 add, 24 div, 12 sqrt, 12 trig
+# required: 1659 mul, 1269 add, 24 div, 12 sqrt, 12 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3734,9 +3716,22 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -3749,21 +3744,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
-        f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
-        f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
-        f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*m_star - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -3820,7 +3803,7 @@ def _run_required(m, X, V, A):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-S) from the base point to the connection point
+        # (uhs-h_3) first moment of link 3 about the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -3830,42 +3813,40 @@ def _run_required(m, X, V, A):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        uhs_S_in_turn1_x = (
-        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
+        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
+        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
+        uhs_h_3_t_4 = (
+        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
+            uhs_base_frame_zx*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_y = (
-        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        uhs_h_3_t_5 = (
+        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
+            uhs_base_frame_zy*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        uhs_h_3_t_6 = (
+        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
+            uhs_base_frame_zz*uhs_h_3_t_3
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
+        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
+        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
+        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
+        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
+        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
+        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
+        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
+        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
+        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
-        # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
-        # (uhs-root_2) root, with the sign of the branch
-        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
-        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = cos(uhs_q_3_t)
-        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = -sin(uhs_q_3_t)
+        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
+        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        # (uhs-q_2) displacement of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -3874,21 +3855,24 @@ def _run_required(m, X, V, A):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
-        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
-        uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3
-        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
-        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
+        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
+        # (uhs-w_2) reciprocal vector 2
+        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
         # (uhs-w_3) reciprocal vector 3
-        inv_uhs_root_2 = 1.0/uhs_root_2
-        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
-        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
-        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
+        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
+        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
+        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
         uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch
         uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch
         uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch
         # (uhs-qd_1) rate of joint 1
-        inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
         uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
             uhs_S_dot_z*uhs_base_frame_zx
@@ -3899,14 +3883,13 @@ def _run_required(m, X, V, A):
         )
         uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*uhs_s_1)
         # (uhs-qd_2) rate of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
         uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
         uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+        inv_uhs_h_3_t_9*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
             uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
@@ -3915,8 +3898,10 @@ def _run_required(m, X, V, A):
         uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
         uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
-        uhs_omega_2_in_axes3_y = -uhs_c_3*uhs_omega_1_in_axes2_y - uhs_qd_2*uhs_s_3
+        uhs_omega_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_qd_2 - uhs_h_3_t_12*uhs_omega_1_in_axes2_y
+        uhs_omega_2_in_axes3_y = (
+        -uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y - uhs_h_3_t_12*uhs_qd_2
+        )
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
         uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
@@ -3930,24 +3915,20 @@ def _run_required(m, X, V, A):
         # (uhs-W_3) centripetal tensor of link 3
         uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
         uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
-        # (uhs-a_p) acceleration of the connection point without its centripetal part
-        uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_z - alpha_z*uhs_q_y
-        uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_x - alpha_x*uhs_q_z
-        uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_y - alpha_y*uhs_q_x
-        # (uhs-S_ddot) acceleration of the connection point
-        uhs_S_ddot_t = uhs_c_3*uhs_e_1_in_axes3_z
-        uhs_S_ddot_t_2 = uhs_s_1*uhs_s_3 - uhs_S_ddot_t*uhs_c_1
-        uhs_S_ddot_t_3 = -uhs_S_ddot_t*uhs_s_1 - uhs_c_1*uhs_s_3
+        # (uhs-u_1) centripetal acceleration of the connection point
+        uhs_u_1_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
+        uhs_u_1_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_c_1*uhs_u_1_t
+        uhs_u_1_t_3 = -uhs_c_1*uhs_h_3_t_12 - uhs_s_1*uhs_u_1_t
         axis_y_uhs_axes3_x = (
-        uhs_S_ddot_t_2*uhs_base_frame_xx + uhs_S_ddot_t_3*uhs_base_frame_xy +
+        uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
             uhs_base_frame_xz*uhs_e_1_in_axes3_y
         )
         axis_y_uhs_axes3_y = (
-        uhs_S_ddot_t_2*uhs_base_frame_yx + uhs_S_ddot_t_3*uhs_base_frame_yy +
+        uhs_base_frame_yx*uhs_u_1_t_2 + uhs_base_frame_yy*uhs_u_1_t_3 +
             uhs_base_frame_yz*uhs_e_1_in_axes3_y
         )
         axis_y_uhs_axes3_z = (
-        uhs_S_ddot_t_2*uhs_base_frame_zx + uhs_S_ddot_t_3*uhs_base_frame_zy +
+        uhs_base_frame_zx*uhs_u_1_t_2 + uhs_base_frame_zy*uhs_u_1_t_3 +
             uhs_base_frame_zz*uhs_e_1_in_axes3_y
         )
         axis_x_uhs_axes3_x = (
@@ -3959,9 +3940,10 @@ def _run_required(m, X, V, A):
         axis_x_uhs_axes3_z = (
         axis_y_uhs_axes3_x*axis_z_uhs_axes3_y - axis_y_uhs_axes3_y*axis_z_uhs_axes3_x
         )
-        uhs_S_ddot_x = uhs_a_p_x + omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2
-        uhs_S_ddot_y = uhs_a_p_y + omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
-        uhs_S_ddot_z = uhs_a_p_z + omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
+        # (uhs-S_ddot) acceleration of the connection point
+        uhs_S_ddot_x = t_ddot_x + B_p_xy*uhs_q_y + B_p_xz*uhs_q_z - W_p_t_4*uhs_q_x
+        uhs_S_ddot_y = t_ddot_y + B_p_yx*uhs_q_x + B_p_yz*uhs_q_z - W_p_t_5*uhs_q_y
+        uhs_S_ddot_z = t_ddot_z + B_p_zx*uhs_q_x + B_p_zy*uhs_q_y - W_p_t_6*uhs_q_z
         uhs_S_ddot_in_axes3_x = (
         axis_x_uhs_axes3_x*uhs_S_ddot_x + axis_x_uhs_axes3_y*uhs_S_ddot_y +
             axis_x_uhs_axes3_z*uhs_S_ddot_z
@@ -3975,8 +3957,8 @@ def _run_required(m, X, V, A):
             axis_z_uhs_axes3_z*uhs_S_ddot_z
         )
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_s_3
-        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_c_3
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_h_3_t_12
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
         # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
         uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
@@ -3986,29 +3968,32 @@ def _run_required(m, X, V, A):
         # (uhs-bias) acceleration of the connection point at zero joint accelerations
         uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
         uhs_bias_in_axes3_x = (
-        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
-            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
-            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_h_3_t_10*(uhs_W_3_in_axes3_xz +
+            uhs_beta_3_in_axes3_y) + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x)
         )
         uhs_bias_in_axes3_y = (
-        uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
-            uhs_zeta_2_in_axes3_x) + uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz -
-            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        uhs_h_3_t_10*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) +
+            uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
-        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
+        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_h_3_t_10 - uhs_W_2_t_3*uhs_joint3_offset_x
         # (uhs-rel) acceleration of the connection point left to the joint accelerations
         uhs_rel_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_bias_in_axes3_x
         uhs_rel_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_bias_in_axes3_y
         uhs_rel_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1) acceleration of joint 1
         uhs_qdd_1 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_x - uhs_rel_in_axes3_y*uhs_s_3)
+        inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_in_axes3_x -
+            uhs_h_3_t_12*uhs_rel_in_axes3_y)
         )
         # (uhs-qdd_2) acceleration of joint 2
         uhs_qdd_2 = (
-        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_t_2 - uhs_c_3*uhs_rel_in_axes3_y -
-            uhs_rel_in_axes3_x*uhs_s_3)
+        inv_uhs_h_3_t_9*(uhs_qdd_1*uhs_v_1_t_2 - uhs_e_2_in_axes3_x*uhs_rel_in_axes3_y -
+            uhs_h_3_t_12*uhs_rel_in_axes3_x)
         )
+        # (uhs-qdd_3) acceleration of joint 3
+        uhs_qdd_3 = inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
         # (uhs-alpha_1) angular acceleration of link 1
         uhs_alpha_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qdd_1
         uhs_alpha_1_in_axes2_y = -uhs_c_2*uhs_qdd_1
@@ -4022,12 +4007,12 @@ def _run_required(m, X, V, A):
         uhs_B_2_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_in_axes2_x
         # (uhs-alpha_3) angular acceleration of link 3
         uhs_alpha_3_in_axes3_x = (
-        uhs_zeta_3_in_axes3_x + uhs_c_3*uhs_qdd_2 - uhs_alpha_2_in_axes2_y*uhs_s_3
+        uhs_zeta_3_in_axes3_x + uhs_e_2_in_axes3_x*uhs_qdd_2 - uhs_alpha_2_in_axes2_y*uhs_h_3_t_12
         )
         uhs_alpha_3_in_axes3_y = (
-        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_c_3 - uhs_qdd_2*uhs_s_3
+        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_e_2_in_axes3_x - uhs_h_3_t_12*uhs_qdd_2
         )
-        uhs_alpha_3_in_axes3_z = uhs_alpha_2_in_axes2_x + inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
+        uhs_alpha_3_in_axes3_z = uhs_alpha_2_in_axes2_x + uhs_qdd_3
         # (uhs-B_3) acceleration tensor of link 3
         uhs_B_3_in_axes3_xy = uhs_W_2_in_axes3_xy - uhs_alpha_3_in_axes3_z
         uhs_B_3_in_axes3_xz = uhs_W_3_in_axes3_xz + uhs_alpha_3_in_axes3_y
@@ -4036,37 +4021,40 @@ def _run_required(m, X, V, A):
         uhs_B_3_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_in_axes3_y
         uhs_B_3_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_in_axes3_x
         # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
-        uhs_acc_3_in_axes3_x = (
-        uhs_S_ddot_in_axes3_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
-            axis_x_uhs_axes3_z*gravity_z
+        uhs_g_in_axes3_x = (
+        axis_x_uhs_axes3_x*gravity_x + axis_x_uhs_axes3_y*gravity_y + axis_x_uhs_axes3_z*gravity_z
         )
-        uhs_acc_3_in_axes3_y = (
-        uhs_S_ddot_in_axes3_y - axis_y_uhs_axes3_x*gravity_x - axis_y_uhs_axes3_y*gravity_y -
-            axis_y_uhs_axes3_z*gravity_z
+        uhs_g_in_axes3_y = (
+        axis_y_uhs_axes3_x*gravity_x + axis_y_uhs_axes3_y*gravity_y + axis_y_uhs_axes3_z*gravity_z
         )
-        uhs_acc_3_in_axes3_z = (
-        uhs_S_ddot_in_axes3_z - axis_z_uhs_axes3_x*gravity_x - axis_z_uhs_axes3_y*gravity_y -
-            axis_z_uhs_axes3_z*gravity_z
+        uhs_g_in_axes3_z = (
+        axis_z_uhs_axes3_x*gravity_x + axis_z_uhs_axes3_y*gravity_y + axis_z_uhs_axes3_z*gravity_z
         )
+        uhs_acc_3_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_g_in_axes3_x
+        uhs_acc_3_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_g_in_axes3_y
+        uhs_acc_3_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_g_in_axes3_z
         # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
+        uhs_mu_3_t_2 = uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_t)
+        uhs_mu_3_t_3 = uhs_J_3_in_spec3_xy*(uhs_W_2_t - uhs_mu_3_t)
+        uhs_mu_3_t_4 = uhs_J_3_in_spec3_yz*(uhs_W_2_t - uhs_W_2_t_2)
         uhs_mu_3_in_axes3_x = (
-        uhs_B_3_in_axes3_yx*uhs_J_3_in_spec3_xy + uhs_B_3_in_axes3_zy*uhs_Sigma_3_in_axes3_yy +
-            uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_t) +
-            uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_z - uhs_B_3_in_axes3_yz*uhs_Sigma_3_in_axes3_zz
-            - uhs_B_3_in_axes3_zx*uhs_J_3_in_spec3_yz - uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_x
+        uhs_mu_3_t_2 + uhs_B_3_in_axes3_yx*uhs_J_3_in_spec3_xy +
+            uhs_B_3_in_axes3_zy*uhs_Sigma_3_in_axes3_yy + uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_z
+            - uhs_B_3_in_axes3_yz*uhs_Sigma_3_in_axes3_zz -
+            uhs_B_3_in_axes3_zx*uhs_J_3_in_spec3_yz - uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_x
         )
         uhs_mu_3_in_axes3_y = (
         uhs_B_3_in_axes3_xz*uhs_Sigma_3_in_axes3_zz + uhs_B_3_in_axes3_zy*uhs_J_3_in_spec3_yz +
-            uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_x - uhs_B_3_in_axes3_xy*uhs_J_3_in_spec3_xz -
-            uhs_B_3_in_axes3_zx*uhs_Sigma_3_in_axes3_xx - uhs_J_3_in_spec3_xy*(uhs_W_2_t -
-            uhs_mu_3_t) - uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_y
+            uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_x - uhs_mu_3_t_3 -
+            uhs_B_3_in_axes3_xy*uhs_J_3_in_spec3_xz - uhs_B_3_in_axes3_zx*uhs_Sigma_3_in_axes3_xx
+            - uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_y
         )
         uhs_mu_3_in_axes3_z = (
-        uhs_B_3_in_axes3_xz*uhs_J_3_in_spec3_xz + uhs_B_3_in_axes3_yx*uhs_Sigma_3_in_axes3_xx +
-            uhs_J_3_in_spec3_yz*(uhs_W_2_t - uhs_W_2_t_2) +
-            uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_xy*uhs_Sigma_3_in_axes3_yy
-            - uhs_B_3_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_z
+        uhs_mu_3_t_4 + uhs_B_3_in_axes3_xz*uhs_J_3_in_spec3_xz +
+            uhs_B_3_in_axes3_yx*uhs_Sigma_3_in_axes3_xx + uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_y
+            - uhs_B_3_in_axes3_xy*uhs_Sigma_3_in_axes3_yy -
+            uhs_B_3_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_z
         )
         # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
@@ -4076,50 +4064,56 @@ def _run_required(m, X, V, A):
         uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
         uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
         uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - uhs_c_2*uhs_mu_2_t_3
+        uhs_mu_2_t_8 = uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 - uhs_mu_2_t_6)
+        uhs_mu_2_t_9 = uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 - uhs_mu_2_t_6)
+        uhs_mu_2_t_10 = uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 - uhs_mu_2_t_5)
+        uhs_mu_2_t_11 = uhs_g_in_axes2_y*uhs_h_2_in_spec2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z
+        uhs_mu_2_t_12 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_y - uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
+        uhs_mu_2_t_13 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_z + uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
         uhs_mu_2_in_axes2_x = (
-        uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy + uhs_B_2_in_axes2_zx*uhs_J_2_in_spec2_xz +
-            uhs_B_2_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
-            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_x + uhs_g_in_axes2_y*uhs_h_2_in_spec2_y +
-            uhs_g_in_axes2_z*uhs_h_2_in_spec2_z - uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 -
-            uhs_mu_2_t_6)
+        uhs_mu_2_t_11 + uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy +
+            uhs_B_2_in_axes2_zx*uhs_J_2_in_spec2_xz + uhs_B_2_in_axes2_zy*uhs_Sigma_2_in_axes2_yy
+            + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_x - uhs_mu_2_t_8
         )
         uhs_mu_2_in_axes2_y = (
-        uhs_B_2_in_axes2_xy*uhs_J_2_in_spec2_yz + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_y +
-            uhs_g_in_axes2_z*uhs_h_2_in_spec2_x - uhs_B_2_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
-            uhs_B_2_in_axes2_zy*uhs_J_2_in_spec2_xz - uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 -
-            uhs_mu_2_t_6) - uhs_g_in_axes2_x*uhs_h_2_in_spec2_y
+        uhs_B_2_in_axes2_xy*uhs_J_2_in_spec2_yz + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_y -
+            uhs_mu_2_t_12 - uhs_mu_2_t_9 - uhs_B_2_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
+            uhs_B_2_in_axes2_zy*uhs_J_2_in_spec2_xz
         )
         uhs_mu_2_in_axes2_z = (
         uhs_B_2_in_axes2_yx*uhs_Sigma_2_in_axes2_xx + uhs_J_2_in_spec2_xy*uhs_alpha_1_in_axes2_x -
-            uhs_B_2_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 -
-            uhs_mu_2_t_5) - uhs_J_2_in_spec2_yz*uhs_alpha_1_in_axes2_y -
-            uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
+            uhs_mu_2_t_10 - uhs_mu_2_t_13 - uhs_B_2_in_axes2_xy*uhs_Sigma_2_in_axes2_yy -
+            uhs_J_2_in_spec2_yz*uhs_alpha_1_in_axes2_y
         )
         # (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_in_axes2_x = uhs_mu_2_in_axes2_x + uhs_mu_3_in_axes3_z
         uhs_N_2_in_axes2_y = (
-        uhs_mu_2_in_axes2_y - uhs_c_3*uhs_mu_3_in_axes3_y - uhs_mu_3_in_axes3_x*uhs_s_3
+        uhs_mu_2_in_axes2_y - uhs_e_2_in_axes3_x*uhs_mu_3_in_axes3_y -
+            uhs_h_3_t_12*uhs_mu_3_in_axes3_x
         )
         uhs_N_2_in_axes2_z = (
-        uhs_mu_2_in_axes2_z + uhs_c_3*uhs_mu_3_in_axes3_x - uhs_mu_3_in_axes3_y*uhs_s_3
+        uhs_mu_2_in_axes2_z + uhs_e_2_in_axes3_x*uhs_mu_3_in_axes3_x -
+            uhs_h_3_t_12*uhs_mu_3_in_axes3_y
         )
         # (uhs-c) leg force on the platform without actuation and without the mass at the connection point
-        uhs_c_t = inv_uhs_root_2*uhs_N_2_in_axes2_z
-        uhs_c_t_2 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_N_2_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_t*uhs_v_1_t_2 -
+        uhs_c_t = uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t)
+        uhs_c_t_2 = uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t)
+        uhs_c_t_3 = uhs_W_2_t_3*uhs_h_3_in_spec3_x
+        uhs_c_t_4 = inv_uhs_h_3_t_9*uhs_N_2_in_axes2_z
+        uhs_c_t_5 = (
+        inv_uhs_v_1_in_axes2_z*(uhs_N_2_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_t_4*uhs_v_1_t_2 -
             uhs_N_2_in_axes2_y*uhs_c_2)
         )
         uhs_c_in_axes3_x = (
-        uhs_c_t*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t) -
-            uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z - uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x -
-            uhs_c_3*uhs_c_t_2
+        uhs_c_t + uhs_c_t_4*uhs_h_3_t_12 - uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z -
+            uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_t_5*uhs_e_2_in_axes3_x
         )
         uhs_c_in_axes3_y = (
-        uhs_c_3*uhs_c_t + uhs_c_t_2*uhs_s_3 + uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t) -
+        uhs_c_t_2 + uhs_c_t_4*uhs_e_2_in_axes3_x + uhs_c_t_5*uhs_h_3_t_12 -
             uhs_B_3_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_yz*uhs_h_3_in_spec3_x
         )
         uhs_c_in_axes3_z = (
-        uhs_W_2_t_3*uhs_h_3_in_spec3_x - inv_uhs_joint3_pitch*uhs_mu_3_in_axes3_z -
+        uhs_c_t_3 - inv_uhs_joint3_pitch*uhs_mu_3_in_axes3_z -
             uhs_B_3_in_axes3_zx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_zy*uhs_h_3_in_spec3_z
         )
         uhs_c_x = (
@@ -4143,8 +4137,8 @@ def _run_required(m, X, V, A):
         uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z
         uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x
         ok = (
-        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
+        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (R_t) force that actuators and external wrench must give
@@ -4233,53 +4227,53 @@ def _run_inverse_kinematics(m, X):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size_t,
         ) = k
-        # (uhs-S) from the base point to the connection point
-        uhs_S_x = (
-        t_x + R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z -
-            uhs_base_point_x
+        # (uhs-h_3) first moment of link 3 about the connection point
+        uhs_q_x = (
+        R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        uhs_S_y = (
-        t_y + R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z -
-            uhs_base_point_y
+        uhs_q_y = (
+        R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        uhs_S_z = (
-        t_z + R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z -
-            uhs_base_point_z
+        uhs_q_z = (
+        R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_in_turn1_x = (
-        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
+        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
+        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
+        uhs_h_3_t_4 = (
+        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
+            uhs_base_frame_zx*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_y = (
-        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        uhs_h_3_t_5 = (
+        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
+            uhs_base_frame_zy*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        uhs_h_3_t_6 = (
+        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
+            uhs_base_frame_zz*uhs_h_3_t_3
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
+        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
+        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
+        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
+        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
+        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
+        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
         # (uhs-q_1) displacement of joint 1
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_q_1 = (
-        atan2(inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1,
-            inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1)
-        )
-        # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
-        # (uhs-root_2) root, with the sign of the branch
-        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        uhs_q_1 = atan2(uhs_s_1, uhs_c_1)
+        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
+        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
         # (uhs-q_2) displacement of joint 2
-        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_q_2 = (
-        atan2(-inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2, inv_uhs_rho2_2*uhs_root_1*uhs_root_2)
-        )
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
+        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
+        uhs_q_2 = atan2(-uhs_e_1_in_axes3_z, uhs_c_2)
         ok = (
-        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
+        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
             _TOLERANCE * _TOLERANCE * uhs_size_t)
         )
         # (uhs-q_1) displacement of joint 1
@@ -4287,11 +4281,11 @@ def _run_inverse_kinematics(m, X):
         # (uhs-q_2) displacement of joint 2
         out_q[_q_uhs[1][leg]] = uhs_q_2
         # (uhs-q_3) displacement of joint 3
-        out_q[_q_uhs[2][leg]] = -uhs_q_3_t
+        out_q[_q_uhs[2][leg]] = -uhs_h_3_t_11
     return ok, (out_q,)
 
 
-# joint_rates: 390 mul, 246 add, 24 div, 12 sqrt, 12 trig
+# joint_rates: 402 mul, 246 add, 24 div, 12 sqrt, 12 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -4356,7 +4350,7 @@ def _run_joint_rates(m, X, V):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-S) from the base point to the connection point
+        # (uhs-h_3) first moment of link 3 about the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -4366,50 +4360,58 @@ def _run_joint_rates(m, X, V):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        uhs_S_in_turn1_x = (
-        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
+        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
+        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
+        uhs_h_3_t_4 = (
+        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
+            uhs_base_frame_zx*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_y = (
-        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        uhs_h_3_t_5 = (
+        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
+            uhs_base_frame_zy*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        uhs_h_3_t_6 = (
+        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
+            uhs_base_frame_zz*uhs_h_3_t_3
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
+        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
+        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
+        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
+        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
+        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
+        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
+        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
+        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
+        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
-        # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
-        # (uhs-root_2) root, with the sign of the branch
-        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
-        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = cos(uhs_q_3_t)
-        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = -sin(uhs_q_3_t)
+        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
+        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        # (uhs-q_2) displacement of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
         # (uhs-S_dot) velocity of the connection point
-        uhs_S_dot_x = t_dot_x + omega_y*uhs_q_z - omega_z*uhs_q_y
-        uhs_S_dot_y = t_dot_y + omega_z*uhs_q_x - omega_x*uhs_q_z
-        uhs_S_dot_z = t_dot_z + omega_x*uhs_q_y - omega_y*uhs_q_x
+        uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
+        uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
+        uhs_S_dot_t_3 = omega_x*uhs_q_y - omega_y*uhs_q_x
+        uhs_S_dot_x = t_dot_x + uhs_S_dot_t
+        uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
+        uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_in_axes3_x = uhs_c_2*uhs_c_3*uhs_root_2
-        uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3
-        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
+        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
+        # (uhs-w_2) reciprocal vector 2
+        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
         # (uhs-qd_1) rate of joint 1
         uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
@@ -4419,23 +4421,22 @@ def _run_joint_rates(m, X, V):
         uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
             uhs_S_dot_z*uhs_base_frame_zy
         )
-        uhs_qd_1 = (uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*uhs_s_1)/uhs_v_1_in_axes2_z
+        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*uhs_s_1)
         # (uhs-qd_2) rate of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
         uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
         uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        (uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*(uhs_s_3*uhs_v_1_in_axes3_x -
-            uhs_c_3*uhs_v_1_t) - uhs_c_2*uhs_qd_2_t)/uhs_root_2
+        inv_uhs_h_3_t_9*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+            uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
         uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_c_2*uhs_qd_2_t_2 + uhs_e_1_in_axes3_z*uhs_qd_2_t)
         ok = (
-        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
+        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (uhs-qd_1) rate of joint 1
@@ -4447,7 +4448,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 870 mul, 546 add, 24 div, 12 sqrt, 12 trig
+# joint_accelerations: 858 mul, 537 add, 24 div, 12 sqrt, 12 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -4516,6 +4517,23 @@ def _run_joint_accelerations(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
@@ -4525,7 +4543,7 @@ def _run_joint_accelerations(m, X, V, A):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-S) from the base point to the connection point
+        # (uhs-h_3) first moment of link 3 about the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -4535,42 +4553,40 @@ def _run_joint_accelerations(m, X, V, A):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        uhs_S_in_turn1_x = (
-        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
+        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
+        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
+        uhs_h_3_t_4 = (
+        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
+            uhs_base_frame_zx*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_y = (
-        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        uhs_h_3_t_5 = (
+        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
+            uhs_base_frame_zy*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        uhs_h_3_t_6 = (
+        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
+            uhs_base_frame_zz*uhs_h_3_t_3
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
+        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
+        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
+        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
+        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
+        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
+        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
+        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
+        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
+        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
-        # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
-        # (uhs-root_2) root, with the sign of the branch
-        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
-        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = cos(uhs_q_3_t)
-        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = -sin(uhs_q_3_t)
+        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
+        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        # (uhs-q_2) displacement of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -4579,13 +4595,21 @@ def _run_joint_accelerations(m, X, V, A):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
-        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
-        uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3
-        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
-        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
-        # (uhs-qd_1) rate of joint 1
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
+        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
+        # (uhs-w_1) reciprocal vector 1
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
+        # (uhs-w_2) reciprocal vector 2
+        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
+        # (uhs-w_3) reciprocal vector 3
+        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
+        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
+        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        # (uhs-qd_1) rate of joint 1
         uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
             uhs_S_dot_z*uhs_base_frame_zx
@@ -4596,15 +4620,13 @@ def _run_joint_accelerations(m, X, V, A):
         )
         uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*uhs_s_1)
         # (uhs-qd_2) rate of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
-        inv_uhs_root_2 = 1.0/uhs_root_2
         uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
         uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+        inv_uhs_h_3_t_9*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
             uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
@@ -4613,94 +4635,102 @@ def _run_joint_accelerations(m, X, V, A):
         uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
         uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
-        uhs_omega_2_in_axes3_y = -uhs_c_3*uhs_omega_1_in_axes2_y - uhs_qd_2*uhs_s_3
+        uhs_omega_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_qd_2 - uhs_h_3_t_12*uhs_omega_1_in_axes2_y
+        uhs_omega_2_in_axes3_y = (
+        -uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y - uhs_h_3_t_12*uhs_qd_2
+        )
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
-        uhs_W_2_t = (
-        uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x +
-            uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y
-        )
+        uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x
+        uhs_W_2_t_2 = uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y
+        uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2
         # (uhs-omega_3) angular velocity of link 3
         uhs_omega_3_in_axes3_z = uhs_omega_1_in_axes2_x + uhs_qd_3
-        # (uhs-a_p) acceleration of the connection point without its centripetal part
-        uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_z - alpha_z*uhs_q_y
-        uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_x - alpha_x*uhs_q_z
-        uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_y - alpha_y*uhs_q_x
-        # (uhs-S_ddot) acceleration of the connection point
-        uhs_S_ddot_x = uhs_a_p_x + omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2
-        uhs_S_ddot_y = uhs_a_p_y + omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
-        uhs_S_ddot_z = uhs_a_p_z + omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
-        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_s_3
-        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_c_3
-        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        uhs_beta_3_in_axes3_x = uhs_zeta_2_in_axes3_x + uhs_omega_2_in_axes3_y*uhs_qd_3
-        uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y - uhs_omega_2_in_axes3_x*uhs_qd_3
-        # (uhs-bias) acceleration of the connection point at zero joint accelerations
-        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
-        uhs_bias_in_axes3_x = (
-        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
-            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
-            uhs_x_3_in_axes2_x*(uhs_beta_3_in_axes3_y +
-            uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z)
-        )
-        uhs_bias_in_axes3_y = (
-        uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
-            uhs_zeta_2_in_axes3_x) +
-            uhs_x_3_in_axes2_x*(uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z -
-            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
-        )
-        uhs_bias_in_axes3_z = -uhs_W_2_t*uhs_joint3_offset_x - uhs_W_2_t*uhs_x_3_in_axes2_x
-        # (uhs-rel) acceleration of the connection point left to the joint accelerations
-        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
-        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
-        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
-        uhs_rel_t = uhs_c_3*uhs_e_1_in_axes3_z
-        uhs_rel_t_2 = uhs_s_1*uhs_s_3 - uhs_c_1*uhs_rel_t
-        uhs_rel_t_3 = -uhs_c_1*uhs_s_3 - uhs_rel_t*uhs_s_1
+        # (uhs-W_3) centripetal tensor of link 3
+        uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
+        uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
+        # (uhs-u_1) centripetal acceleration of the connection point
+        uhs_u_1_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
+        uhs_u_1_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_c_1*uhs_u_1_t
+        uhs_u_1_t_3 = -uhs_c_1*uhs_h_3_t_12 - uhs_s_1*uhs_u_1_t
         axis_y_uhs_axes3_x = (
-        uhs_base_frame_xx*uhs_rel_t_2 + uhs_base_frame_xy*uhs_rel_t_3 +
+        uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
             uhs_base_frame_xz*uhs_e_1_in_axes3_y
         )
         axis_y_uhs_axes3_y = (
-        uhs_base_frame_yx*uhs_rel_t_2 + uhs_base_frame_yy*uhs_rel_t_3 +
+        uhs_base_frame_yx*uhs_u_1_t_2 + uhs_base_frame_yy*uhs_u_1_t_3 +
             uhs_base_frame_yz*uhs_e_1_in_axes3_y
         )
         axis_y_uhs_axes3_z = (
-        uhs_base_frame_zx*uhs_rel_t_2 + uhs_base_frame_zy*uhs_rel_t_3 +
+        uhs_base_frame_zx*uhs_u_1_t_2 + uhs_base_frame_zy*uhs_u_1_t_3 +
             uhs_base_frame_zz*uhs_e_1_in_axes3_y
         )
-        uhs_rel_in_axes3_x = (
-        uhs_S_ddot_x*(axis_y_uhs_axes3_y*axis_z_uhs_axes3_z -
-            axis_y_uhs_axes3_z*axis_z_uhs_axes3_y) +
-            uhs_S_ddot_y*(axis_y_uhs_axes3_z*axis_z_uhs_axes3_x -
-            axis_y_uhs_axes3_x*axis_z_uhs_axes3_z) +
-            uhs_S_ddot_z*(axis_y_uhs_axes3_x*axis_z_uhs_axes3_y -
-            axis_y_uhs_axes3_y*axis_z_uhs_axes3_x) - uhs_bias_in_axes3_x
+        axis_x_uhs_axes3_x = (
+        axis_y_uhs_axes3_y*axis_z_uhs_axes3_z - axis_y_uhs_axes3_z*axis_z_uhs_axes3_y
         )
-        uhs_rel_in_axes3_y = (
+        axis_x_uhs_axes3_y = (
+        axis_y_uhs_axes3_z*axis_z_uhs_axes3_x - axis_y_uhs_axes3_x*axis_z_uhs_axes3_z
+        )
+        axis_x_uhs_axes3_z = (
+        axis_y_uhs_axes3_x*axis_z_uhs_axes3_y - axis_y_uhs_axes3_y*axis_z_uhs_axes3_x
+        )
+        # (uhs-S_ddot) acceleration of the connection point
+        uhs_S_ddot_x = t_ddot_x + B_p_xy*uhs_q_y + B_p_xz*uhs_q_z - W_p_t_4*uhs_q_x
+        uhs_S_ddot_y = t_ddot_y + B_p_yx*uhs_q_x + B_p_yz*uhs_q_z - W_p_t_5*uhs_q_y
+        uhs_S_ddot_z = t_ddot_z + B_p_zx*uhs_q_x + B_p_zy*uhs_q_y - W_p_t_6*uhs_q_z
+        uhs_S_ddot_in_axes3_x = (
+        axis_x_uhs_axes3_x*uhs_S_ddot_x + axis_x_uhs_axes3_y*uhs_S_ddot_y +
+            axis_x_uhs_axes3_z*uhs_S_ddot_z
+        )
+        uhs_S_ddot_in_axes3_y = (
         axis_y_uhs_axes3_x*uhs_S_ddot_x + axis_y_uhs_axes3_y*uhs_S_ddot_y +
-            axis_y_uhs_axes3_z*uhs_S_ddot_z - uhs_bias_in_axes3_y
+            axis_y_uhs_axes3_z*uhs_S_ddot_z
         )
-        uhs_rel_in_axes3_z = (
+        uhs_S_ddot_in_axes3_z = (
         axis_z_uhs_axes3_x*uhs_S_ddot_x + axis_z_uhs_axes3_y*uhs_S_ddot_y +
-            axis_z_uhs_axes3_z*uhs_S_ddot_z - uhs_bias_in_axes3_z
+            axis_z_uhs_axes3_z*uhs_S_ddot_z
         )
+        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_h_3_t_12
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
+        # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
+        uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
+        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        uhs_beta_3_in_axes3_x = uhs_zeta_2_in_axes3_x + uhs_zeta_3_in_axes3_x
+        uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y
+        # (uhs-bias) acceleration of the connection point at zero joint accelerations
+        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
+        uhs_bias_in_axes3_x = (
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_h_3_t_10*(uhs_W_3_in_axes3_xz +
+            uhs_beta_3_in_axes3_y) + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x)
+        )
+        uhs_bias_in_axes3_y = (
+        uhs_h_3_t_10*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) +
+            uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        )
+        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_h_3_t_10 - uhs_W_2_t_3*uhs_joint3_offset_x
+        # (uhs-rel) acceleration of the connection point left to the joint accelerations
+        uhs_rel_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_bias_in_axes3_x
+        uhs_rel_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_bias_in_axes3_y
+        uhs_rel_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1) acceleration of joint 1
         uhs_qdd_1 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_x - uhs_rel_in_axes3_y*uhs_s_3)
+        inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_in_axes3_x -
+            uhs_h_3_t_12*uhs_rel_in_axes3_y)
         )
         # (uhs-qdd_2) acceleration of joint 2
         uhs_qdd_2 = (
-        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_t_2 - uhs_c_3*uhs_rel_in_axes3_y -
-            uhs_rel_in_axes3_x*uhs_s_3)
+        inv_uhs_h_3_t_9*(uhs_qdd_1*uhs_v_1_t_2 - uhs_e_2_in_axes3_x*uhs_rel_in_axes3_y -
+            uhs_h_3_t_12*uhs_rel_in_axes3_x)
         )
         # (uhs-qdd_3) acceleration of joint 3
         uhs_qdd_3 = inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
         ok = (
-        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
+        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (uhs-qdd_1) acceleration of joint 1
@@ -4712,7 +4742,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 1530 mul, 1152 add, 24 div, 12 sqrt, 12 trig
+# legs: 1518 mul, 1143 add, 24 div, 12 sqrt, 12 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -4783,6 +4813,23 @@ def _run_legs(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yz,
@@ -4798,7 +4845,7 @@ def _run_legs(m, X, V, A):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-S) from the base point to the connection point
+        # (uhs-h_3) first moment of link 3 about the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -4808,42 +4855,40 @@ def _run_legs(m, X, V, A):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        uhs_S_in_turn1_x = (
-        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
+        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
+        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
+        uhs_h_3_t_4 = (
+        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
+            uhs_base_frame_zx*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_y = (
-        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        uhs_h_3_t_5 = (
+        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
+            uhs_base_frame_zy*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        uhs_h_3_t_6 = (
+        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
+            uhs_base_frame_zz*uhs_h_3_t_3
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
+        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
+        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
+        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
+        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
+        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
+        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
+        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
+        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
+        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
-        # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
-        # (uhs-root_2) root, with the sign of the branch
-        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
-        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = cos(uhs_q_3_t)
-        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = -sin(uhs_q_3_t)
+        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
+        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        # (uhs-q_2) displacement of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -4852,21 +4897,24 @@ def _run_legs(m, X, V, A):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
-        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
-        uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3
-        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
-        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
+        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
+        # (uhs-w_2) reciprocal vector 2
+        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
         # (uhs-w_3) reciprocal vector 3
-        inv_uhs_root_2 = 1.0/uhs_root_2
-        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
-        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
-        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
+        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
+        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
+        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
         uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch
         uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch
         uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch
         # (uhs-qd_1) rate of joint 1
-        inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
         uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
             uhs_S_dot_z*uhs_base_frame_zx
@@ -4877,14 +4925,13 @@ def _run_legs(m, X, V, A):
         )
         uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*uhs_s_1)
         # (uhs-qd_2) rate of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
         uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
         uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+        inv_uhs_h_3_t_9*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
             uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
@@ -4893,8 +4940,10 @@ def _run_legs(m, X, V, A):
         uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
         uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
-        uhs_omega_2_in_axes3_y = -uhs_c_3*uhs_omega_1_in_axes2_y - uhs_qd_2*uhs_s_3
+        uhs_omega_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_qd_2 - uhs_h_3_t_12*uhs_omega_1_in_axes2_y
+        uhs_omega_2_in_axes3_y = (
+        -uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y - uhs_h_3_t_12*uhs_qd_2
+        )
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
         uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
@@ -4908,24 +4957,20 @@ def _run_legs(m, X, V, A):
         # (uhs-W_3) centripetal tensor of link 3
         uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
         uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
-        # (uhs-a_p) acceleration of the connection point without its centripetal part
-        uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_z - alpha_z*uhs_q_y
-        uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_x - alpha_x*uhs_q_z
-        uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_y - alpha_y*uhs_q_x
-        # (uhs-S_ddot) acceleration of the connection point
-        uhs_S_ddot_t = uhs_c_3*uhs_e_1_in_axes3_z
-        uhs_S_ddot_t_2 = uhs_s_1*uhs_s_3 - uhs_S_ddot_t*uhs_c_1
-        uhs_S_ddot_t_3 = -uhs_S_ddot_t*uhs_s_1 - uhs_c_1*uhs_s_3
+        # (uhs-u_1) centripetal acceleration of the connection point
+        uhs_u_1_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
+        uhs_u_1_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_c_1*uhs_u_1_t
+        uhs_u_1_t_3 = -uhs_c_1*uhs_h_3_t_12 - uhs_s_1*uhs_u_1_t
         axis_y_uhs_axes3_x = (
-        uhs_S_ddot_t_2*uhs_base_frame_xx + uhs_S_ddot_t_3*uhs_base_frame_xy +
+        uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
             uhs_base_frame_xz*uhs_e_1_in_axes3_y
         )
         axis_y_uhs_axes3_y = (
-        uhs_S_ddot_t_2*uhs_base_frame_yx + uhs_S_ddot_t_3*uhs_base_frame_yy +
+        uhs_base_frame_yx*uhs_u_1_t_2 + uhs_base_frame_yy*uhs_u_1_t_3 +
             uhs_base_frame_yz*uhs_e_1_in_axes3_y
         )
         axis_y_uhs_axes3_z = (
-        uhs_S_ddot_t_2*uhs_base_frame_zx + uhs_S_ddot_t_3*uhs_base_frame_zy +
+        uhs_base_frame_zx*uhs_u_1_t_2 + uhs_base_frame_zy*uhs_u_1_t_3 +
             uhs_base_frame_zz*uhs_e_1_in_axes3_y
         )
         axis_x_uhs_axes3_x = (
@@ -4937,9 +4982,10 @@ def _run_legs(m, X, V, A):
         axis_x_uhs_axes3_z = (
         axis_y_uhs_axes3_x*axis_z_uhs_axes3_y - axis_y_uhs_axes3_y*axis_z_uhs_axes3_x
         )
-        uhs_S_ddot_x = uhs_a_p_x + omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2
-        uhs_S_ddot_y = uhs_a_p_y + omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
-        uhs_S_ddot_z = uhs_a_p_z + omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
+        # (uhs-S_ddot) acceleration of the connection point
+        uhs_S_ddot_x = t_ddot_x + B_p_xy*uhs_q_y + B_p_xz*uhs_q_z - W_p_t_4*uhs_q_x
+        uhs_S_ddot_y = t_ddot_y + B_p_yx*uhs_q_x + B_p_yz*uhs_q_z - W_p_t_5*uhs_q_y
+        uhs_S_ddot_z = t_ddot_z + B_p_zx*uhs_q_x + B_p_zy*uhs_q_y - W_p_t_6*uhs_q_z
         uhs_S_ddot_in_axes3_x = (
         axis_x_uhs_axes3_x*uhs_S_ddot_x + axis_x_uhs_axes3_y*uhs_S_ddot_y +
             axis_x_uhs_axes3_z*uhs_S_ddot_z
@@ -4953,8 +4999,8 @@ def _run_legs(m, X, V, A):
             axis_z_uhs_axes3_z*uhs_S_ddot_z
         )
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_s_3
-        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_c_3
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_h_3_t_12
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
         # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
         uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
@@ -4964,29 +5010,32 @@ def _run_legs(m, X, V, A):
         # (uhs-bias) acceleration of the connection point at zero joint accelerations
         uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
         uhs_bias_in_axes3_x = (
-        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
-            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
-            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_h_3_t_10*(uhs_W_3_in_axes3_xz +
+            uhs_beta_3_in_axes3_y) + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x)
         )
         uhs_bias_in_axes3_y = (
-        uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
-            uhs_zeta_2_in_axes3_x) + uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz -
-            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        uhs_h_3_t_10*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) +
+            uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
-        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
+        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_h_3_t_10 - uhs_W_2_t_3*uhs_joint3_offset_x
         # (uhs-rel) acceleration of the connection point left to the joint accelerations
         uhs_rel_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_bias_in_axes3_x
         uhs_rel_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_bias_in_axes3_y
         uhs_rel_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1) acceleration of joint 1
         uhs_qdd_1 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_x - uhs_rel_in_axes3_y*uhs_s_3)
+        inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_in_axes3_x -
+            uhs_h_3_t_12*uhs_rel_in_axes3_y)
         )
         # (uhs-qdd_2) acceleration of joint 2
         uhs_qdd_2 = (
-        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_t_2 - uhs_c_3*uhs_rel_in_axes3_y -
-            uhs_rel_in_axes3_x*uhs_s_3)
+        inv_uhs_h_3_t_9*(uhs_qdd_1*uhs_v_1_t_2 - uhs_e_2_in_axes3_x*uhs_rel_in_axes3_y -
+            uhs_h_3_t_12*uhs_rel_in_axes3_x)
         )
+        # (uhs-qdd_3) acceleration of joint 3
+        uhs_qdd_3 = inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
         # (uhs-alpha_1) angular acceleration of link 1
         uhs_alpha_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qdd_1
         uhs_alpha_1_in_axes2_y = -uhs_c_2*uhs_qdd_1
@@ -5000,12 +5049,12 @@ def _run_legs(m, X, V, A):
         uhs_B_2_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_in_axes2_x
         # (uhs-alpha_3) angular acceleration of link 3
         uhs_alpha_3_in_axes3_x = (
-        uhs_zeta_3_in_axes3_x + uhs_c_3*uhs_qdd_2 - uhs_alpha_2_in_axes2_y*uhs_s_3
+        uhs_zeta_3_in_axes3_x + uhs_e_2_in_axes3_x*uhs_qdd_2 - uhs_alpha_2_in_axes2_y*uhs_h_3_t_12
         )
         uhs_alpha_3_in_axes3_y = (
-        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_c_3 - uhs_qdd_2*uhs_s_3
+        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_e_2_in_axes3_x - uhs_h_3_t_12*uhs_qdd_2
         )
-        uhs_alpha_3_in_axes3_z = uhs_alpha_2_in_axes2_x + inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
+        uhs_alpha_3_in_axes3_z = uhs_alpha_2_in_axes2_x + uhs_qdd_3
         # (uhs-B_3) acceleration tensor of link 3
         uhs_B_3_in_axes3_xy = uhs_W_2_in_axes3_xy - uhs_alpha_3_in_axes3_z
         uhs_B_3_in_axes3_xz = uhs_W_3_in_axes3_xz + uhs_alpha_3_in_axes3_y
@@ -5014,37 +5063,40 @@ def _run_legs(m, X, V, A):
         uhs_B_3_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_in_axes3_y
         uhs_B_3_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_in_axes3_x
         # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
-        uhs_acc_3_in_axes3_x = (
-        uhs_S_ddot_in_axes3_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
-            axis_x_uhs_axes3_z*gravity_z
+        uhs_g_in_axes3_x = (
+        axis_x_uhs_axes3_x*gravity_x + axis_x_uhs_axes3_y*gravity_y + axis_x_uhs_axes3_z*gravity_z
         )
-        uhs_acc_3_in_axes3_y = (
-        uhs_S_ddot_in_axes3_y - axis_y_uhs_axes3_x*gravity_x - axis_y_uhs_axes3_y*gravity_y -
-            axis_y_uhs_axes3_z*gravity_z
+        uhs_g_in_axes3_y = (
+        axis_y_uhs_axes3_x*gravity_x + axis_y_uhs_axes3_y*gravity_y + axis_y_uhs_axes3_z*gravity_z
         )
-        uhs_acc_3_in_axes3_z = (
-        uhs_S_ddot_in_axes3_z - axis_z_uhs_axes3_x*gravity_x - axis_z_uhs_axes3_y*gravity_y -
-            axis_z_uhs_axes3_z*gravity_z
+        uhs_g_in_axes3_z = (
+        axis_z_uhs_axes3_x*gravity_x + axis_z_uhs_axes3_y*gravity_y + axis_z_uhs_axes3_z*gravity_z
         )
+        uhs_acc_3_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_g_in_axes3_x
+        uhs_acc_3_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_g_in_axes3_y
+        uhs_acc_3_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_g_in_axes3_z
         # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
+        uhs_mu_3_t_2 = uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_t)
+        uhs_mu_3_t_3 = uhs_J_3_in_spec3_xy*(uhs_W_2_t - uhs_mu_3_t)
+        uhs_mu_3_t_4 = uhs_J_3_in_spec3_yz*(uhs_W_2_t - uhs_W_2_t_2)
         uhs_mu_3_in_axes3_x = (
-        uhs_B_3_in_axes3_yx*uhs_J_3_in_spec3_xy + uhs_B_3_in_axes3_zy*uhs_Sigma_3_in_axes3_yy +
-            uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_t) +
-            uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_z - uhs_B_3_in_axes3_yz*uhs_Sigma_3_in_axes3_zz
-            - uhs_B_3_in_axes3_zx*uhs_J_3_in_spec3_yz - uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_x
+        uhs_mu_3_t_2 + uhs_B_3_in_axes3_yx*uhs_J_3_in_spec3_xy +
+            uhs_B_3_in_axes3_zy*uhs_Sigma_3_in_axes3_yy + uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_z
+            - uhs_B_3_in_axes3_yz*uhs_Sigma_3_in_axes3_zz -
+            uhs_B_3_in_axes3_zx*uhs_J_3_in_spec3_yz - uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_x
         )
         uhs_mu_3_in_axes3_y = (
         uhs_B_3_in_axes3_xz*uhs_Sigma_3_in_axes3_zz + uhs_B_3_in_axes3_zy*uhs_J_3_in_spec3_yz +
-            uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_x - uhs_B_3_in_axes3_xy*uhs_J_3_in_spec3_xz -
-            uhs_B_3_in_axes3_zx*uhs_Sigma_3_in_axes3_xx - uhs_J_3_in_spec3_xy*(uhs_W_2_t -
-            uhs_mu_3_t) - uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_y
+            uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_x - uhs_mu_3_t_3 -
+            uhs_B_3_in_axes3_xy*uhs_J_3_in_spec3_xz - uhs_B_3_in_axes3_zx*uhs_Sigma_3_in_axes3_xx
+            - uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_y
         )
         uhs_mu_3_in_axes3_z = (
-        uhs_B_3_in_axes3_xz*uhs_J_3_in_spec3_xz + uhs_B_3_in_axes3_yx*uhs_Sigma_3_in_axes3_xx +
-            uhs_J_3_in_spec3_yz*(uhs_W_2_t - uhs_W_2_t_2) +
-            uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_xy*uhs_Sigma_3_in_axes3_yy
-            - uhs_B_3_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_z
+        uhs_mu_3_t_4 + uhs_B_3_in_axes3_xz*uhs_J_3_in_spec3_xz +
+            uhs_B_3_in_axes3_yx*uhs_Sigma_3_in_axes3_xx + uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_y
+            - uhs_B_3_in_axes3_xy*uhs_Sigma_3_in_axes3_yy -
+            uhs_B_3_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_z
         )
         # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
@@ -5054,50 +5106,56 @@ def _run_legs(m, X, V, A):
         uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
         uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
         uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - uhs_c_2*uhs_mu_2_t_3
+        uhs_mu_2_t_8 = uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 - uhs_mu_2_t_6)
+        uhs_mu_2_t_9 = uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 - uhs_mu_2_t_6)
+        uhs_mu_2_t_10 = uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 - uhs_mu_2_t_5)
+        uhs_mu_2_t_11 = uhs_g_in_axes2_y*uhs_h_2_in_spec2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z
+        uhs_mu_2_t_12 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_y - uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
+        uhs_mu_2_t_13 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_z + uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
         uhs_mu_2_in_axes2_x = (
-        uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy + uhs_B_2_in_axes2_zx*uhs_J_2_in_spec2_xz +
-            uhs_B_2_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
-            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_x + uhs_g_in_axes2_y*uhs_h_2_in_spec2_y +
-            uhs_g_in_axes2_z*uhs_h_2_in_spec2_z - uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 -
-            uhs_mu_2_t_6)
+        uhs_mu_2_t_11 + uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy +
+            uhs_B_2_in_axes2_zx*uhs_J_2_in_spec2_xz + uhs_B_2_in_axes2_zy*uhs_Sigma_2_in_axes2_yy
+            + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_x - uhs_mu_2_t_8
         )
         uhs_mu_2_in_axes2_y = (
-        uhs_B_2_in_axes2_xy*uhs_J_2_in_spec2_yz + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_y +
-            uhs_g_in_axes2_z*uhs_h_2_in_spec2_x - uhs_B_2_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
-            uhs_B_2_in_axes2_zy*uhs_J_2_in_spec2_xz - uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 -
-            uhs_mu_2_t_6) - uhs_g_in_axes2_x*uhs_h_2_in_spec2_y
+        uhs_B_2_in_axes2_xy*uhs_J_2_in_spec2_yz + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_y -
+            uhs_mu_2_t_12 - uhs_mu_2_t_9 - uhs_B_2_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
+            uhs_B_2_in_axes2_zy*uhs_J_2_in_spec2_xz
         )
         uhs_mu_2_in_axes2_z = (
         uhs_B_2_in_axes2_yx*uhs_Sigma_2_in_axes2_xx + uhs_J_2_in_spec2_xy*uhs_alpha_1_in_axes2_x -
-            uhs_B_2_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 -
-            uhs_mu_2_t_5) - uhs_J_2_in_spec2_yz*uhs_alpha_1_in_axes2_y -
-            uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
+            uhs_mu_2_t_10 - uhs_mu_2_t_13 - uhs_B_2_in_axes2_xy*uhs_Sigma_2_in_axes2_yy -
+            uhs_J_2_in_spec2_yz*uhs_alpha_1_in_axes2_y
         )
         # (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_in_axes2_x = uhs_mu_2_in_axes2_x + uhs_mu_3_in_axes3_z
         uhs_N_2_in_axes2_y = (
-        uhs_mu_2_in_axes2_y - uhs_c_3*uhs_mu_3_in_axes3_y - uhs_mu_3_in_axes3_x*uhs_s_3
+        uhs_mu_2_in_axes2_y - uhs_e_2_in_axes3_x*uhs_mu_3_in_axes3_y -
+            uhs_h_3_t_12*uhs_mu_3_in_axes3_x
         )
         uhs_N_2_in_axes2_z = (
-        uhs_mu_2_in_axes2_z + uhs_c_3*uhs_mu_3_in_axes3_x - uhs_mu_3_in_axes3_y*uhs_s_3
+        uhs_mu_2_in_axes2_z + uhs_e_2_in_axes3_x*uhs_mu_3_in_axes3_x -
+            uhs_h_3_t_12*uhs_mu_3_in_axes3_y
         )
         # (uhs-c) leg force on the platform without actuation and without the mass at the connection point
-        uhs_c_t = inv_uhs_root_2*uhs_N_2_in_axes2_z
-        uhs_c_t_2 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_N_2_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_t*uhs_v_1_t_2 -
+        uhs_c_t = uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t)
+        uhs_c_t_2 = uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t)
+        uhs_c_t_3 = uhs_W_2_t_3*uhs_h_3_in_spec3_x
+        uhs_c_t_4 = inv_uhs_h_3_t_9*uhs_N_2_in_axes2_z
+        uhs_c_t_5 = (
+        inv_uhs_v_1_in_axes2_z*(uhs_N_2_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_t_4*uhs_v_1_t_2 -
             uhs_N_2_in_axes2_y*uhs_c_2)
         )
         uhs_c_in_axes3_x = (
-        uhs_c_t*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t) -
-            uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z - uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x -
-            uhs_c_3*uhs_c_t_2
+        uhs_c_t + uhs_c_t_4*uhs_h_3_t_12 - uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z -
+            uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_t_5*uhs_e_2_in_axes3_x
         )
         uhs_c_in_axes3_y = (
-        uhs_c_3*uhs_c_t + uhs_c_t_2*uhs_s_3 + uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t) -
+        uhs_c_t_2 + uhs_c_t_4*uhs_e_2_in_axes3_x + uhs_c_t_5*uhs_h_3_t_12 -
             uhs_B_3_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_yz*uhs_h_3_in_spec3_x
         )
         uhs_c_in_axes3_z = (
-        uhs_W_2_t_3*uhs_h_3_in_spec3_x - inv_uhs_joint3_pitch*uhs_mu_3_in_axes3_z -
+        uhs_c_t_3 - inv_uhs_joint3_pitch*uhs_mu_3_in_axes3_z -
             uhs_B_3_in_axes3_zx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_zy*uhs_h_3_in_spec3_z
         )
         # (uhs-c_true) leg force on the platform without actuation, the last link's mass included
@@ -5117,8 +5175,8 @@ def _run_legs(m, X, V, A):
             axis_z_uhs_axes3_z*uhs_c_true_in_axes3_z
         )
         ok = (
-        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
+        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (uhs-c_true) leg force on the platform without actuation, the last link's mass included
@@ -5179,12 +5237,14 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
+    gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
+        m_star*t_z)
     )
     potential_uhs, = [0.0] * 1
     for leg, k in legs[0]:
@@ -5199,72 +5259,75 @@ def _run_potential(m, X):
             uhs_platform_point_z, uhs_potential_t, uhs_potential_t_2, uhs_potential_t_3,
             uhs_size_t,
         ) = k
-        # (uhs-S) from the base point to the connection point
-        uhs_S_x = (
-        t_x + R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z -
-            uhs_base_point_x
+        # (uhs-h_3) first moment of link 3 about the connection point
+        uhs_q_x = (
+        R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        uhs_S_y = (
-        t_y + R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z -
-            uhs_base_point_y
+        uhs_q_y = (
+        R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        uhs_S_z = (
-        t_z + R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z -
-            uhs_base_point_z
+        uhs_q_z = (
+        R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_in_turn1_x = (
-        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
+        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
+        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
+        uhs_h_3_t_4 = (
+        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
+            uhs_base_frame_zx*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_y = (
-        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        uhs_h_3_t_5 = (
+        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
+            uhs_base_frame_zy*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        uhs_h_3_t_6 = (
+        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
+            uhs_base_frame_zz*uhs_h_3_t_3
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
+        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
+        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
+        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
+        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
+        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
+        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
+        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
+        uhs_h_3_in_spec2_z = (
+        uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_z + uhs_h_3_in_spec3_y*uhs_h_3_t_12
+        )
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
+        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
+        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
-        # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
-        # (uhs-root_2) root, with the sign of the branch
-        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
-        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = cos(uhs_q_3_t)
-        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = -sin(uhs_q_3_t)
+        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
+        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        # (uhs-q_2) displacement of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
+        # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
+        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
+        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - uhs_c_2*uhs_mu_2_t_3
         # (potential) potential energy
-        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
-        uhs_potential_t_4 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
-        uhs_potential_t_5 = uhs_c_1*uhs_potential_t + uhs_potential_t_2*uhs_s_1
-        uhs_potential_t_6 = (
-        (uhs_e_1_in_axes3_z*uhs_potential_t_4 - uhs_c_2*uhs_mu_2_t_3)*(uhs_h_2_in_spec2_z +
-            uhs_c_3*uhs_h_3_in_spec3_z + uhs_h_3_in_spec3_y*uhs_s_3 -
-            uhs_link2_mass*(uhs_e_1_in_axes3_z*uhs_potential_t_5 - uhs_c_2*uhs_potential_t_3)) -
-            (uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1)*(uhs_h_2_in_spec2_y +
-            uhs_c_3*uhs_h_3_in_spec3_y + uhs_link2_mass*(uhs_c_1*uhs_potential_t_2 -
-            uhs_potential_t*uhs_s_1) - uhs_h_3_in_spec3_z*uhs_s_3) - (uhs_c_2*uhs_potential_t_4 +
-            uhs_e_1_in_axes3_z*uhs_mu_2_t_3)*(uhs_h_2_in_spec2_x + uhs_h_3_in_spec3_x +
-            uhs_link2_mass*(uhs_c_2*uhs_potential_t_5 + uhs_e_1_in_axes3_z*uhs_potential_t_3))
+        uhs_potential_t_4 = uhs_c_1*uhs_potential_t + uhs_potential_t_2*uhs_s_1
+        uhs_potential_t_5 = (
+        uhs_g_in_axes2_y*(uhs_h_2_in_spec2_z + uhs_h_3_in_spec2_z -
+            uhs_link2_mass*(uhs_e_1_in_axes3_z*uhs_potential_t_4 - uhs_c_2*uhs_potential_t_3)) -
+            uhs_g_in_axes2_x*(uhs_h_2_in_spec2_x + uhs_h_3_in_spec3_x +
+            uhs_link2_mass*(uhs_c_2*uhs_potential_t_4 + uhs_e_1_in_axes3_z*uhs_potential_t_3)) -
+            uhs_g_in_axes2_z*(uhs_h_2_in_spec2_y + uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_y +
+            uhs_link2_mass*(uhs_c_1*uhs_potential_t_2 - uhs_potential_t*uhs_s_1) -
+            uhs_h_3_in_spec3_z*uhs_h_3_t_12)
         )
         ok = (
-        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
+        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
             _TOLERANCE * _TOLERANCE * uhs_size_t)
         )
         # (potential) potential energy
-        potential_uhs += uhs_potential_t_6
+        potential_uhs += uhs_potential_t_5
     # (potential) potential energy
     potential = potential_uhs - potential_t
     # (potential) potential energy
@@ -5272,7 +5335,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 301 mul, 210 add, 12 div, 25 sqrt, 12 trig
+# condition: 307 mul, 210 add, 12 div, 25 sqrt, 12 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -5334,7 +5397,7 @@ def _run_condition(m, X):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-S) from the base point to the connection point
+        # (uhs-h_3) first moment of link 3 about the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -5344,47 +5407,52 @@ def _run_condition(m, X):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        uhs_S_in_turn1_x = (
-        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
+        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
+        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
+        uhs_h_3_t_4 = (
+        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
+            uhs_base_frame_zx*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_y = (
-        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        uhs_h_3_t_5 = (
+        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
+            uhs_base_frame_zy*uhs_h_3_t_3
         )
-        uhs_S_in_turn1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        uhs_h_3_t_6 = (
+        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
+            uhs_base_frame_zz*uhs_h_3_t_3
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
-        # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
-        # (uhs-root_2) root, with the sign of the branch
-        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
+        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
+        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
+        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
+        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
+        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
+        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
+        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
+        # (uhs-root_1) root, with the sign of the branch
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        uhs_c_2 = uhs_branch_1*sqrt(uhs_rho2_1)*uhs_root_2/uhs_rho2_2
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
-        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = cos(uhs_q_3_t)
-        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = -sin(uhs_q_3_t)
+        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
+        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_in_axes2_z = (
-        uhs_c_2*uhs_c_3*uhs_c_3*uhs_root_2 + uhs_c_2*uhs_root_2*uhs_s_3*uhs_s_3
-        )
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
+        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
+        # (uhs-w_2) reciprocal vector 2
+        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
         # (uhs-w_3) reciprocal vector 3
-        inv_uhs_root_2 = 1.0/uhs_root_2
-        uhs_w_3_x = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_x
-        uhs_w_3_y = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_y
-        uhs_w_3_z = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_z
+        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
+        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
+        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch
+        uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch
+        uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch
         # (uhs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        uhs_pivot_size = abs(uhs_rho2_1)
-        uhs_pivot_size_2 = abs(uhs_rho2_2)
-        uhs_pivot_size_3 = abs(uhs_root_2)
+        uhs_pivot_size = abs(uhs_h_3_t_7)
+        uhs_pivot_size_2 = abs(uhs_h_3_t_8)
+        uhs_pivot_size_3 = abs(uhs_h_3_t_9)
         uhs_pivot_size_4 = abs(uhs_v_1_in_axes2_z)
         uhs_least_pivots = (
         least(least(least(inv_uhs_size*uhs_pivot_size_3, inv_uhs_size*uhs_pivot_size_4),
@@ -5402,8 +5470,8 @@ def _run_condition(m, X):
         uhs_spread_t*uhs_spread_t + uhs_spread_t_2*uhs_spread_t_2 + uhs_spread_t_3*uhs_spread_t_3
         )
         clear = (
-        clear & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
+        clear & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (spread) rms distance of the platform points from their centroid
@@ -5670,11 +5738,11 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_2 = q[[2, 5, 8, 11, 14, 17]]
-    gap = q_actuated - q_of_inverse_kinematics_from_2
-    return (gap,)
+    residual = q_actuated - q_of_inverse_kinematics_from_2
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -5683,7 +5751,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

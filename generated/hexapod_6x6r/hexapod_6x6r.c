@@ -144,9 +144,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -208,6 +208,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -256,7 +280,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -266,7 +290,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -279,7 +303,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -296,16 +320,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -313,7 +337,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1714,9 +1747,9 @@ INLINE void turn_between(const real *a, const real *b, real *v)
 
 #define STEADY BY_TYPE(5e-5, 1e-11, 1e-13)  /* a step [m, rad] below which q has converged */
 
-/* Steps of q that close the gaps of the legs to first order; returns the largest entry, NaN
-   where there is no step.  gap[legs][rows], jacobian[legs][rows][n], step[legs][n]. */
-INLINE real newton_step(size_t legs, size_t rows, size_t n, const real *gap, const real *jacobian,
+/* Steps of q that close the loops of the legs to first order; returns the largest entry, NaN
+   where there is no step.  residual[legs][rows], jacobian[legs][rows][n], step[legs][n]. */
+INLINE real newton_step(size_t legs, size_t rows, size_t n, const real *residual, const real *jacobian,
         real *step)
 {
     real singular = 0;
@@ -1724,7 +1757,7 @@ INLINE real newton_step(size_t legs, size_t rows, size_t n, const real *gap, con
         real a[BIG*(BIG + 1)];
         for (size_t i = 0; i < rows; ++i) {
             memcpy(a + i*(n + 1), jacobian + (leg*rows + i)*n, n*sizeof *a);
-            a[i*(n + 1) + n] = gap[leg*rows + i];
+            a[i*(n + 1) + n] = residual[leg*rows + i];
         }
         if (rows == n) {
             solve_one(n, n + 1, a, step + leg*n, &singular);
@@ -1788,10 +1821,28 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
-        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
-        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+    real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
+        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
+
+INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
+{
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real W_p_t = omega_x*omega_x;
+    const real omega_y = V[4*w + k];
+    const real W_p_t_2 = omega_y*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_t_3 = omega_z*omega_z;
+    v->W_p_t_4 = W_p_t_2 + W_p_t_3;
+    v->W_p_xy = omega_x*omega_y;
+    v->W_p_xz = omega_x*omega_z;
+    v->W_p_t_5 = W_p_t + W_p_t_3;
+    v->W_p_yz = omega_y*omega_z;
+    v->W_p_t_6 = W_p_t + W_p_t_2;
+}
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
@@ -1801,10 +1852,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_5 = X[5*w + k];
     const real X_6 = X[6*w + k];
     const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-    const real quaternion_scale = 2/quaternion_norm2;
-    const real quaternion_sx = X_3*quaternion_scale;
-    const real quaternion_sy = X_4*quaternion_scale;
-    const real quaternion_sz = X_5*quaternion_scale;
+    v->quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*v->quaternion_scale;
+    const real quaternion_sy = X_4*v->quaternion_scale;
+    const real quaternion_sz = X_5*v->quaternion_scale;
     const real quaternion_wx = X_6*quaternion_sx;
     const real quaternion_wy = X_6*quaternion_sy;
     const real quaternion_wz = X_6*quaternion_sz;
@@ -1814,53 +1865,22 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real quaternion_yy = X_4*quaternion_sy;
     const real quaternion_yz = X_4*quaternion_sz;
     const real quaternion_zz = X_5*quaternion_sz;
-    const real R_xx = 1 - quaternion_yy - quaternion_zz;
-    const real R_xy = quaternion_xy - quaternion_wz;
-    const real R_xz = quaternion_wy + quaternion_xz;
-    const real R_yx = quaternion_wz + quaternion_xy;
-    const real R_yy = 1 - quaternion_xx - quaternion_zz;
-    const real R_yz = quaternion_yz - quaternion_wx;
-    const real R_zx = quaternion_xz - quaternion_wy;
-    const real R_zy = quaternion_wx + quaternion_yz;
-    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    v->R_xx = 1 - quaternion_yy - quaternion_zz;
+    v->R_xy = quaternion_xy - quaternion_wz;
+    v->R_xz = quaternion_wy + quaternion_xz;
+    v->R_yx = quaternion_wz + quaternion_xy;
+    v->R_yy = 1 - quaternion_xx - quaternion_zz;
+    v->R_yz = quaternion_yz - quaternion_wx;
+    v->R_zx = quaternion_xz - quaternion_wy;
+    v->R_zy = quaternion_wx + quaternion_yz;
+    v->R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
-        R_xx*m->h_star_in_platform_x;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
-        R_yy*m->h_star_in_platform_y;
-    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
-        R_zz*m->h_star_in_platform_z;
-    v->quaternion_scale = quaternion_scale;
-    v->R_xx = R_xx;
-    v->R_xy = R_xy;
-    v->R_xz = R_xz;
-    v->R_yx = R_yx;
-    v->R_yy = R_yy;
-    v->R_yz = R_yz;
-    v->R_zx = R_zx;
-    v->R_zy = R_zy;
-    v->R_zz = R_zz;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
-    v->h_star_z = h_star_z;
-}
-
-INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
-{
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
-    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
-    v->omega_in_platform_x = omega_in_platform_x;
-    v->omega_in_platform_y = omega_in_platform_y;
-    v->omega_in_platform_z = omega_in_platform_z;
-}
-
-INLINE void stage_M_dynamics(const prepared *m, values *v)
-{
+    v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
+        v->R_xx*m->h_star_in_platform_x;
+    v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
+        v->R_yy*m->h_star_in_platform_y;
+    v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
+        v->R_zz*m->h_star_in_platform_z;
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
@@ -1872,23 +1892,31 @@ INLINE void stage_M_dynamics(const prepared *m, values *v)
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
-    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+    v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
-    v->J_star_xx = J_star_xx;
-    v->J_star_xy = J_star_xy;
-    v->J_star_xz = J_star_xz;
-    v->J_star_yy = J_star_yy;
-    v->J_star_yz = J_star_yz;
-    v->J_star_zz = J_star_zz;
+    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
+}
+
+INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
+{
+    /* (B_p) acceleration tensor of the platform */
+    const real alpha_z = A[5*w + k];
+    v->B_p_xy = v->W_p_xy - alpha_z;
+    const real alpha_y = A[4*w + k];
+    v->B_p_xz = alpha_y + v->W_p_xz;
+    v->B_p_yx = alpha_z + v->W_p_xy;
+    const real alpha_x = A[3*w + k];
+    v->B_p_yz = v->W_p_yz - alpha_x;
+    v->B_p_zx = v->W_p_xz - alpha_y;
+    v->B_p_zy = alpha_x + v->W_p_yz;
 }
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
@@ -1900,138 +1928,120 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
+    v->Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    v->Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    v->Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
-        v->R_xx*m->gravity_x;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
-        v->R_yy*m->gravity_y;
-    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
-        v->R_zz*m->gravity_z;
-    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
-        Z_q_t_2*v->omega_in_platform_z;
-    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
-        Z_q_t_3*v->omega_in_platform_x;
-    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
-        Z_q_t*v->omega_in_platform_y;
-    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
-        v->R_xz*Z_q_in_platform_z;
-    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
-        v->R_yz*Z_q_in_platform_z;
-    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
-        v->R_zz*Z_q_in_platform_z;
-    v->Z_p_x = Z_p_x;
-    v->Z_p_y = Z_p_y;
-    v->Z_p_z = Z_p_z;
-    v->Z_q_x = Z_q_x;
-    v->Z_q_y = Z_q_y;
-    v->Z_q_z = Z_q_z;
+    const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
+    const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
+    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
+        Z_q_t_2*omega_z;
+    v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
+        Z_q_t_3*omega_x;
+    v->Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x + Z_q_t_2*omega_x -
+        Z_q_t*omega_y;
 }
 
 typedef struct {
     real six_r_q_x, six_r_q_y, six_r_q_z, six_r_n_m1_t, six_r_n_m1_t_2, six_r_n_m1_t_3,
-        six_r_e_2_in_axes5_z, six_r_h_4_t, six_r_h_4_in_spec3_y, six_r_c_1, six_r_s_1, six_r_c_2,
-        six_r_s_2, six_r_c_3, six_r_s_3, six_r_v_1_t, six_r_v_1_t_2, six_r_d_2_in_spec2_x,
-        six_r_g_in_axes1_x, six_r_g_in_axes1_y, six_r_g_in_axes2_x, six_r_g_in_axes2_y,
-        six_r_g_in_axes3_x, six_r_g_in_axes3_y, six_r_c_4, six_r_s_4, six_r_c_5, six_r_s_5,
-        six_r_e_2_in_axes5_y, axis_z_six_r_axes5_x, axis_z_six_r_axes5_y, axis_z_six_r_axes5_z,
-        axis_y_six_r_axes5_x, axis_y_six_r_axes5_y, axis_y_six_r_axes5_z, axis_x_six_r_axes5_x,
-        axis_x_six_r_axes5_y, axis_x_six_r_axes5_z, six_r_r_1_in_axes5_z, six_r_r_1_in_axes5_x,
-        six_r_r_1_in_axes5_y, six_r_e_1_in_axes5_z, six_r_e_1_in_axes5_x, six_r_e_1_in_axes5_y,
-        six_r_v_1_in_axes5_x, six_r_v_1_in_axes5_y, six_r_v_1_in_axes5_z, six_r_e_2_in_axes5_x,
-        six_r_v_2_in_axes5_x, six_r_v_2_in_axes5_y, six_r_v_2_in_axes5_z, six_r_v_3_in_axes5_x,
-        six_r_v_3_in_axes5_y, six_r_v_3_in_axes5_z, six_r_v_4_in_axes5_z, six_r_d_4_in_axes5_x,
-        six_r_d_5_in_axes5_x, six_r_d_2_in_axes5_z, six_r_d_2_in_axes5_x, six_r_d_2_in_axes5_y,
-        six_r_d_3_in_axes5_z, six_r_d_3_in_axes5_x, six_r_d_3_in_axes5_y, six_r_bias_t_8,
-        six_r_bias_t_9, six_r_a_p_x, six_r_a_p_y, six_r_a_p_z, six_r_alpha_in_axes5_y,
-        six_r_S_dot_t_14, six_r_S_dot_t_15, six_r_S_dot_t_16, six_r_S_dot_x, six_r_S_dot_y,
-        six_r_S_dot_z, six_r_omega_in_axes5_x, six_r_omega_in_axes5_y, six_r_omega_in_axes5_z,
-        six_r_n_m1_t_5, six_r_n_m1_t_8, six_r_n_m1_t_9, six_r_n_m1_t_10, six_r_n_m1_in_axes5_y,
-        six_r_n_m2_in_axes5_z, six_r_end_p1_in_axes5_z, six_r_w_1_t_12, inv_six_r_w_1_t_12,
-        six_r_w_1_t_13, six_r_w_1_t_14, six_r_w_1_t_15, six_r_w_1_t_18, six_r_w_1_t_22,
-        six_r_w_1_t_25, six_r_w_1_t_28, inv_six_r_w_1_t_28, six_r_w_1_t_29, six_r_w_1_t_30,
-        six_r_w_1_t_31, six_r_w_1_t_32, six_r_w_1_t_33, six_r_w_1_t_39, six_r_w_1_t_44,
-        six_r_w_1_t_49, inv_six_r_w_1_t_49, six_r_w_1_t_50, six_r_w_1_t_51, six_r_w_1_t_52,
-        six_r_w_1_t_53, six_r_w_1_t_54, six_r_w_1_t_55, six_r_w_1_t_61, six_r_w_1_t_67,
-        inv_six_r_w_1_t_67, six_r_w_1_t_68, six_r_w_1_t_69, six_r_w_1_t_70, six_r_w_1_t_71,
-        six_r_w_1_t_72, six_r_w_1_t_73, six_r_w_1_t_74, six_r_w_1_t_75, six_r_w_1_t_76,
-        six_r_w_1_t_77, six_r_w_1_t_78, six_r_w_1_t_79, inv_six_r_w_1_t_79, six_r_S_ddot_x,
-        six_r_S_ddot_y, six_r_S_ddot_z, six_r_etad_1_t, six_r_etad_2_t, six_r_S_dot_in_axes5_x,
-        six_r_S_dot_in_axes5_y, six_r_S_dot_in_axes5_z, six_r_nd_m1_t, six_r_eta_1, six_r_eta_2_t,
-        six_r_w_2_x, six_r_w_2_y, six_r_w_2_z, six_r_H_a_2_x, six_r_H_a_2_y, six_r_H_a_2_z,
-        six_r_e_4_in_axes5_x, six_r_J_5_t, six_r_J_5_in_axes4_yz, six_r_D_3_5, six_r_D_1_5,
-        six_r_Jc_4_in_axes4_zz, six_r_L_c_4_3_in_axes3_z, six_r_L_c_4_2_in_axes2_z,
-        six_r_L_c_4_2_in_axes1_z, six_r_Jc_3_in_axes3_zz, six_r_L_c_3_2_in_axes2_z,
-        six_r_L_c_3_2_in_axes1_z, six_r_Jc_2_in_axes2_zz, six_r_Jc_2_in_axes1_yz,
-        six_r_Jc_1_in_axes1_zz, six_r_d_Gamma_3_t, six_r_d_Gamma_3_t_2, six_r_d_Gamma_3_t_3,
-        six_r_u_1_x, six_r_u_1_y, six_r_u_1_z, six_r_bias_t_4, six_r_bias_t_5, six_r_bias_t_10,
-        six_r_bias_t_11, six_r_qd_1_t, six_r_qd_1_t_2, six_r_qd_1_t_3, six_r_qd_1_t_4, six_r_qd_1_t_5,
-        six_r_o_2_t, six_r_o_2_in_axes5_z, six_r_o_2_in_axes5_y, six_r_acc_5_in_axes5_x,
-        six_r_acc_5_in_axes5_y, six_r_acc_5_in_axes5_z, six_r_G_m_in_axes5_x, six_r_G_m_in_axes5_y,
-        six_r_c_in_axes5_x, six_r_c_in_axes5_y, six_r_c_in_axes5_z, six_r_c_m_in_axes5_z;
+        six_r_e_2_in_axes5_z, six_r_h_4_t, six_r_h_4_in_spec2_z, six_r_h_4_in_spec3_y,
+        six_r_e_4_in_axes5_x, six_r_J_5_t, six_r_c_1, six_r_s_1, six_r_c_2, six_r_s_2, six_r_c_3,
+        six_r_s_3, six_r_e_2_in_axes5_y, axis_z_six_r_axes5_x, axis_z_six_r_axes5_y,
+        axis_z_six_r_axes5_z, axis_y_six_r_axes5_x, axis_y_six_r_axes5_y, axis_y_six_r_axes5_z,
+        axis_x_six_r_axes5_x, axis_x_six_r_axes5_y, axis_x_six_r_axes5_z, six_r_r_1_in_axes5_z,
+        six_r_r_1_in_axes5_x, six_r_r_1_in_axes5_y, six_r_e_1_in_axes5_z, six_r_e_1_in_axes5_x,
+        six_r_e_1_in_axes5_y, six_r_v_1_in_axes5_x, six_r_v_1_in_axes5_y, six_r_v_1_in_axes5_z,
+        six_r_e_2_in_axes5_x, six_r_v_2_in_axes5_x, six_r_v_2_in_axes5_y, six_r_v_2_in_axes5_z,
+        six_r_v_3_in_axes5_x, six_r_v_3_in_axes5_y, six_r_v_3_in_axes5_z, six_r_v_4_in_axes5_z,
+        six_r_d_2_in_spec2_x, six_r_bias_t_3, six_r_d_2_in_axes5_z, six_r_d_2_in_axes5_x,
+        six_r_d_2_in_axes5_y, six_r_d_3_in_axes5_z, six_r_d_3_in_axes5_x, six_r_d_3_in_axes5_y,
+        six_r_d_4_in_axes5_x, six_r_bias_t_16, six_r_d_5_in_axes5_x, six_r_bias_t_17,
+        six_r_g_in_axes1_y, six_r_g_in_axes2_x, six_r_g_in_axes2_y, six_r_g_in_axes3_x,
+        six_r_g_in_axes3_y, six_r_g_in_axes4_x, six_r_g_in_axes4_y, six_r_g_in_axes5_x,
+        six_r_g_in_axes5_y, six_r_g_in_axes5_z, six_r_d_Gamma_4_t, six_r_mu_2_t, six_r_mu_2_t_2,
+        six_r_mu_2_t_3, six_r_mu_1_t, six_r_alpha_in_axes5_y, six_r_S_dot_t_14, six_r_S_dot_t_15,
+        six_r_S_dot_t_16, six_r_S_dot_x, six_r_S_dot_y, six_r_S_dot_z, six_r_omega_in_axes5_x,
+        six_r_omega_in_axes5_y, six_r_omega_in_axes5_z, six_r_n_m1_in_axes5_y,
+        six_r_end_p1_in_axes5_y, six_r_n_m1_t_11, six_r_n_m1_t_12, six_r_n_m1_in_axes4_z,
+        six_r_n_m1_x, six_r_n_m1_y, six_r_n_m1_z, six_r_end_p1_in_axes5_z, six_r_n_m2_t,
+        six_r_n_m2_t_2, six_r_n_m2_in_axes4_z, six_r_n_m2_x, six_r_n_m2_y, six_r_n_m2_z,
+        six_r_w_1_t_8, inv_six_r_w_1_t_8, six_r_w_1_t_9, six_r_w_1_t_10, six_r_w_1_t_11,
+        six_r_w_1_t_14, six_r_w_1_t_18, six_r_w_1_t_21, six_r_w_1_t_24, inv_six_r_w_1_t_24,
+        six_r_w_1_t_25, six_r_w_1_t_26, six_r_w_1_t_27, six_r_w_1_t_28, six_r_w_1_t_29,
+        six_r_w_1_t_35, six_r_w_1_t_40, six_r_w_1_t_45, inv_six_r_w_1_t_45, six_r_w_1_t_46,
+        six_r_w_1_t_47, six_r_w_1_t_48, six_r_w_1_t_49, six_r_w_1_t_50, six_r_w_1_t_51,
+        six_r_w_1_t_57, six_r_w_1_t_63, inv_six_r_w_1_t_63, six_r_w_1_t_64, six_r_w_1_t_65,
+        six_r_w_1_t_66, six_r_w_1_t_67, six_r_w_1_t_68, six_r_w_1_t_69, six_r_w_1_t_75,
+        inv_six_r_w_1_t_75, six_r_w_1_t_76, six_r_w_1_t_77, six_r_w_1_t_78, six_r_m1_w_1_t,
+        six_r_m2_w_1_t, six_r_w_2_in_axes5_x, six_r_w_2_in_axes5_y, six_r_w_2_in_axes5_z, six_r_w_2_x,
+        six_r_w_2_y, six_r_w_2_z, six_r_m1_w_2, six_r_m2_w_2, six_r_o_2_t, six_r_o_2_in_axes5_z,
+        six_r_o_2_in_axes5_y, six_r_H_a_2_t, six_r_H_a_2_t_2, six_r_H_a_2_t_3, six_r_H_a_2_x,
+        six_r_H_a_2_y, six_r_H_a_2_z, six_r_S_ddot_x, six_r_S_ddot_y, six_r_S_ddot_z, six_r_etad_1_t,
+        six_r_etad_2_t, six_r_eta_1_2, six_r_eta_2_t, six_r_qd_1_t_3, six_r_qd_1_t_4, six_r_qd_1_t_5,
+        six_r_qd_1_t_6, six_r_qd_1_t_7, six_r_qd_1_t_8, six_r_qd_1_t_9, six_r_qd_1_t_10,
+        six_r_qd_1_t_11, six_r_qd_4_t, six_r_qd_4_t_2, six_r_qd_5_t, six_r_nd_m1_t, six_r_qd_1_t_17,
+        six_r_qd_1_t_18, six_r_qd_1, six_r_qd_4_t_3, six_r_qd_5_t_2, six_r_omega_1_in_axes2_x_2,
+        six_r_omega_1_in_axes2_y_2, six_r_omega_2_in_axes3_x_2, six_r_omega_2_in_axes3_y_2,
+        six_r_W_2_in_axes2_yz_2, six_r_omega_3_in_axes3_z_2, six_r_omega_3_in_axes4_x_2,
+        six_r_omega_3_in_axes4_y_2, six_r_omega_4_in_axes4_z_2, six_r_omega_4_in_axes5_y_2,
+        six_r_W_4_in_axes5_xy_2, six_r_omega_5_in_axes5_z_2, six_r_W_5_t_4, six_r_W_5_t_5,
+        six_r_W_5_t_6, six_r_W_5_in_axes5_xz_2, six_r_zeta_2_in_axes2_y_2, six_r_zeta_3_t_2,
+        six_r_zeta_3_in_axes3_y, six_r_zeta_4_in_axes4_x_2, six_r_zeta_4_in_axes4_y, six_r_zeta_5_t_2,
+        six_r_zeta_5_in_axes5_y, six_r_bias_t_19, six_r_bias_t_20, six_r_bias_in_axes5_x_2,
+        six_r_bias_in_axes5_y_2, six_r_bias_in_axes5_z_2, six_r_nu_1_2, six_r_nu_2_2,
+        six_r_S_ddot_in_axes5_x, six_r_S_ddot_in_axes5_y, six_r_S_ddot_in_axes5_z, six_r_qdd_1_t_3,
+        six_r_qdd_1_t_4, six_r_qdd_1_t_5, six_r_qdd_4, six_r_qdd_5, six_r_Q_xx, six_r_Q_xy,
+        six_r_Q_xz, six_r_Q_yy, six_r_Q_yz, six_r_Q_zz, six_r_M_ta_t_13, six_r_M_ta_t_14,
+        six_r_M_ta_t_15, six_r_M_ta_t_16, six_r_M_ta_t_17, six_r_M_ta_t_18, six_r_M_ta_t_19,
+        six_r_M_ta_t_20, six_r_M_ta_t_21, six_r_M_aa_t, six_r_M_aa_t_2, six_r_M_aa_t_3,
+        six_r_M_aa_t_4, six_r_M_aa_t_5, six_r_M_aa_t_6, six_r_U_x, six_r_U_y, six_r_U_z, six_r_Z_a_t,
+        six_r_Z_a_t_2, six_r_Z_a_t_3, six_r_o_2_x_2, six_r_o_2_y_2, six_r_o_2_z_2,
+        six_r_acc_5_in_axes5_x, six_r_acc_5_in_axes5_y, six_r_acc_5_in_axes5_z, six_r_c_in_axes5_x,
+        six_r_c_in_axes5_y, six_r_c_in_axes5_z, six_r_c_m_x, six_r_c_m_y, six_r_c_m_z;
 } values_six_r;
 
 INLINE void stage_six_r_X(const prepared *m, size_t w, size_t i, size_t j, const real *s,
     values_six_r *v)
 {
-    /* (six_r-S_dot) velocity of the connection point */
+    /* (six_r-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real six_r_q_x = R_xy*m->six_r_platform_point_y[i] +
-        R_xz*m->six_r_platform_point_z[i] + R_xx*m->six_r_platform_point_x[i];
+    v->six_r_q_x = R_xy*m->six_r_platform_point_y[i] + R_xz*m->six_r_platform_point_z[i] +
+        R_xx*m->six_r_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real six_r_q_y = R_yx*m->six_r_platform_point_x[i] +
-        R_yz*m->six_r_platform_point_z[i] + R_yy*m->six_r_platform_point_y[i];
+    v->six_r_q_y = R_yx*m->six_r_platform_point_x[i] + R_yz*m->six_r_platform_point_z[i] +
+        R_yy*m->six_r_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real six_r_q_z = R_zx*m->six_r_platform_point_x[i] +
-        R_zy*m->six_r_platform_point_y[i] + R_zz*m->six_r_platform_point_z[i];
+    v->six_r_q_z = R_zx*m->six_r_platform_point_x[i] + R_zy*m->six_r_platform_point_y[i] +
+        R_zz*m->six_r_platform_point_z[i];
     /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real six_r_n_m1_t =
+    v->six_r_n_m1_t =
         m->six_r_platform_joint_axis_platform_x[i]*(R_yx*m->six_r_base_frame_yy[i] +
         R_zx*m->six_r_base_frame_zy[i] + R_xx*m->six_r_base_frame_xy[i]) +
         m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xy[i] +
         R_zy*m->six_r_base_frame_zy[i] + R_yy*m->six_r_base_frame_yy[i]) +
         m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xy[i] +
         R_yz*m->six_r_base_frame_yy[i] + R_zz*m->six_r_base_frame_zy[i]);
-    const real six_r_n_m1_t_2 =
+    v->six_r_n_m1_t_2 =
         m->six_r_platform_joint_axis_platform_x[i]*(R_yx*m->six_r_base_frame_yz[i] +
         R_zx*m->six_r_base_frame_zz[i] + R_xx*m->six_r_base_frame_xz[i]) +
         m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xz[i] +
         R_zy*m->six_r_base_frame_zz[i] + R_yy*m->six_r_base_frame_yz[i]) +
         m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xz[i] +
         R_yz*m->six_r_base_frame_yz[i] + R_zz*m->six_r_base_frame_zz[i]);
-    const real six_r_n_m1_t_3 =
+    v->six_r_n_m1_t_3 =
         m->six_r_platform_joint_axis_platform_x[i]*(R_yx*m->six_r_base_frame_yx[i] +
         R_zx*m->six_r_base_frame_zx[i] + R_xx*m->six_r_base_frame_xx[i]) +
         m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xx[i] +
         R_zy*m->six_r_base_frame_zx[i] + R_yy*m->six_r_base_frame_yx[i]) +
         m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xx[i] +
         R_yz*m->six_r_base_frame_yx[i] + R_zz*m->six_r_base_frame_zx[i]);
-    v->six_r_q_x = six_r_q_x;
-    v->six_r_q_y = six_r_q_y;
-    v->six_r_q_z = six_r_q_z;
-    v->six_r_n_m1_t = six_r_n_m1_t;
-    v->six_r_n_m1_t_2 = six_r_n_m1_t_2;
-    v->six_r_n_m1_t_3 = six_r_n_m1_t_3;
 }
 
 INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const real *joints,
@@ -2044,645 +2054,75 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
     /* (six_r-h_4) first moment of link 4 about the origin of link 4 */
     const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-    const real six_r_e_2_in_axes5_z = cosine(six_r_q_4);
-    const real six_r_h_4_t = sine(six_r_q_4);
-    const real six_r_h_4_in_spec3_y = six_r_e_2_in_axes5_z*m->six_r_h_4_in_spec4_y[i] -
-        m->six_r_h_4_in_spec4_z[i]*six_r_h_4_t;
-    /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
-    const real six_r_c_1 = cosine(six_r_q_1);
-    /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
-    const real six_r_s_1 = sine(six_r_q_1);
-    /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
-    const real six_r_c_2 = cosine(six_r_q_2);
-    /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
-    const real six_r_s_2 = sine(six_r_q_2);
-    /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
-    const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
-    const real six_r_c_3 = cosine(six_r_q_3);
-    /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
-    const real six_r_s_3 = sine(six_r_q_3);
-    /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-    const real six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2;
-    const real six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3;
-    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-    const real six_r_d_2_in_spec2_x = six_r_c_2*m->six_r_joint2_offset_x[i];
-    /* (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real six_r_g_in_axes1_x = m->six_r_acc_3_t[i]*six_r_c_1 +
-        m->six_r_acc_3_t_2[i]*six_r_s_1;
-    const real six_r_g_in_axes1_y = m->six_r_acc_3_t_2[i]*six_r_c_1 -
-        m->six_r_acc_3_t[i]*six_r_s_1;
-    const real six_r_g_in_axes2_x = six_r_c_2*m->six_r_g_in_axes1_z[i] +
-        six_r_g_in_axes1_x*six_r_s_2;
-    const real six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_x -
-        m->six_r_g_in_axes1_z[i]*six_r_s_2;
-    const real six_r_g_in_axes3_x = six_r_g_in_axes2_x*six_r_s_3 -
-        six_r_c_3*six_r_g_in_axes2_y;
-    const real six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_x +
-        six_r_g_in_axes2_y*six_r_s_3;
-    /* (six_r-c_4) cosine of the angle of joint 4 from its reference direction */
-    const real six_r_c_4 = cosine(six_r_q_4);
-    /* (six_r-s_4) sine of the angle of joint 4 from its reference direction */
-    const real six_r_s_4 = sine(six_r_q_4);
-    /* (six_r-c_5) cosine of the angle of joint 5 from its reference direction */
-    const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-    const real six_r_c_5 = cosine(six_r_q_5);
-    /* (six_r-s_5) sine of the angle of joint 5 from its reference direction */
-    const real six_r_s_5 = sine(six_r_q_5);
-    /* (six_r-S_dot) velocity of the connection point */
-    const real six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4;
-    const real six_r_S_dot_t = six_r_c_3*six_r_s_4;
-    const real six_r_S_dot_t_2 = six_r_s_3*six_r_s_4;
-    const real six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2;
-    const real six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2;
-    const real six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1;
-    const real six_r_S_dot_t_6 = six_r_c_1*six_r_c_4 + six_r_S_dot_t_4*six_r_s_1;
-    const real axis_z_six_r_axes5_x = six_r_S_dot_t_3*m->six_r_base_frame_xx[i] +
-        six_r_S_dot_t_5*m->six_r_base_frame_xy[i] + six_r_S_dot_t_6*m->six_r_base_frame_xz[i];
-    const real axis_z_six_r_axes5_y = six_r_S_dot_t_3*m->six_r_base_frame_yx[i] +
-        six_r_S_dot_t_5*m->six_r_base_frame_yy[i] + six_r_S_dot_t_6*m->six_r_base_frame_yz[i];
-    const real axis_z_six_r_axes5_z = six_r_S_dot_t_3*m->six_r_base_frame_zx[i] +
-        six_r_S_dot_t_5*m->six_r_base_frame_zy[i] + six_r_S_dot_t_6*m->six_r_base_frame_zz[i];
-    const real six_r_S_dot_t_7 = six_r_c_4*six_r_c_5;
-    const real six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3;
-    const real six_r_S_dot_t_9 = -six_r_c_3*six_r_s_5 - six_r_S_dot_t_7*six_r_s_3;
-    const real six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2;
-    const real six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2;
-    const real six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1;
-    const real six_r_S_dot_t_13 = six_r_c_1*six_r_e_2_in_axes5_y + six_r_S_dot_t_11*six_r_s_1;
-    const real axis_y_six_r_axes5_x = six_r_S_dot_t_10*m->six_r_base_frame_xx[i] +
-        six_r_S_dot_t_12*m->six_r_base_frame_xy[i] +
-        six_r_S_dot_t_13*m->six_r_base_frame_xz[i];
-    const real axis_y_six_r_axes5_y = six_r_S_dot_t_10*m->six_r_base_frame_yx[i] +
-        six_r_S_dot_t_12*m->six_r_base_frame_yy[i] +
-        six_r_S_dot_t_13*m->six_r_base_frame_yz[i];
-    const real axis_y_six_r_axes5_z = six_r_S_dot_t_10*m->six_r_base_frame_zx[i] +
-        six_r_S_dot_t_12*m->six_r_base_frame_zy[i] +
-        six_r_S_dot_t_13*m->six_r_base_frame_zz[i];
-    const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
-        axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
-    const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
-        axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
-    const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
-        axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-    /* (six_r-r_4) from joint 4 to the connection point, along the links */
-    const real six_r_r_4_in_axes4_x = m->six_r_platform_joint_offset_x[i]*six_r_s_5;
-    const real six_r_r_4_in_axes4_z = m->six_r_joint5_offset_x[i] +
-        six_r_c_5*m->six_r_platform_joint_offset_x[i];
-    const real six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x;
-    const real six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4;
-    /* (six_r-r_3) from joint 3 to the connection point, along the links */
-    const real six_r_r_3_in_axes3_y = m->six_r_joint4_offset_x[i] + six_r_r_4_in_axes4_z;
-    const real six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 -
-        six_r_c_3*six_r_r_4_in_axes3_x;
-    const real six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4;
-    const real six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z;
-    const real six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x;
-    const real six_r_r_3_in_axes5_z = six_r_r_4_in_axes3_x*six_r_s_4 + six_r_r_3_t_2;
-    const real six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y +
-        six_r_r_3_t_3*six_r_s_5;
-    const real six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 -
-        six_r_r_3_in_axes3_y*six_r_s_5;
-    /* (six_r-r_2) from joint 2 to the connection point, along the links */
-    const real six_r_r_2_in_axes2_x = m->six_r_joint3_offset_x[i] +
-        six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3;
-    const real six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y +
-        six_r_r_2_in_axes2_x*six_r_s_2;
-    const real six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y;
-    const real six_r_r_2_t_2 = six_r_r_3_in_axes2_y*six_r_s_3 +
-        six_r_c_3*six_r_r_2_in_axes2_x;
-    const real six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t;
-    const real six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4;
-    const real six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5;
-    const real six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5;
-    /* (six_r-r_1) from joint 1 to the connection point, along the links */
-    const real six_r_r_1_in_axes1_z = m->six_r_joint2_offset_x[i] -
-        six_r_r_3_in_axes2_y*six_r_s_2 + six_r_c_2*six_r_r_2_in_axes2_x;
-    const real six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2;
-    const real six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x -
-        six_r_r_1_in_axes1_z*six_r_s_2;
-    const real six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2;
-    const real six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3;
-    const real six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3;
-    const real six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4;
-    const real six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5;
-    const real six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5;
-    /* (six_r-v_1) */
-    const real six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t;
-    const real six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t;
-    const real six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3;
-    const real six_r_e_1_in_axes5_y = -six_r_s_5*six_r_v_1_t_2 - six_r_c_5*six_r_v_1_t_3;
-    const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
-        six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
-    const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
-        six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
-    const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
-        six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
-    /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-    const real six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5;
-    const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
-        six_r_c_4*six_r_r_2_in_axes5_y;
-    const real six_r_v_2_in_axes5_y = six_r_c_4*six_r_r_2_in_axes5_x -
-        six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
-    const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
-    /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-    const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
-        six_r_c_4*six_r_r_3_in_axes5_y;
-    const real six_r_v_3_in_axes5_y = six_r_c_4*six_r_r_3_in_axes5_x -
-        six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
-    const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
-    /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-    const real six_r_v_4_in_axes5_z = six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x -
-        six_r_r_4_in_axes4_z*six_r_s_5) + six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z +
-        six_r_r_4_in_axes4_x*six_r_s_5);
-    /* (six_r-bias) */
-    const real six_r_d_4_in_axes5_x = six_r_c_5*m->six_r_joint4_offset_x[i];
-    const real six_r_d_5_in_axes5_x = six_r_c_5*m->six_r_joint5_offset_x[i];
-    const real six_r_bias_t = m->six_r_joint2_offset_x[i]*six_r_s_2;
-    const real six_r_bias_t_2 = six_r_bias_t*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3;
-    const real six_r_bias_t_3 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t*six_r_s_3;
-    const real six_r_bias_t_4 = six_r_bias_t_2*six_r_c_4;
-    const real six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_s_4;
-    const real six_r_d_2_in_axes5_x = six_r_bias_t_3*six_r_c_5 - six_r_bias_t_4*six_r_s_5;
-    const real six_r_d_2_in_axes5_y = -six_r_bias_t_3*six_r_s_5 - six_r_bias_t_4*six_r_c_5;
-    const real six_r_bias_t_5 = m->six_r_joint3_offset_x[i]*six_r_s_3;
-    const real six_r_bias_t_6 = six_r_c_3*m->six_r_joint3_offset_x[i];
-    const real six_r_bias_t_7 = six_r_bias_t_5*six_r_c_4;
-    const real six_r_d_3_in_axes5_z = six_r_bias_t_5*six_r_s_4;
-    const real six_r_d_3_in_axes5_x = six_r_bias_t_6*six_r_c_5 - six_r_bias_t_7*six_r_s_5;
-    const real six_r_d_3_in_axes5_y = -six_r_bias_t_6*six_r_s_5 - six_r_bias_t_7*six_r_c_5;
-    const real six_r_bias_t_8 = m->six_r_joint4_offset_x[i]*six_r_s_5;
-    const real six_r_bias_t_9 = m->six_r_joint5_offset_x[i]*six_r_s_5;
-    v->six_r_e_2_in_axes5_z = six_r_e_2_in_axes5_z;
-    v->six_r_h_4_t = six_r_h_4_t;
-    v->six_r_h_4_in_spec3_y = six_r_h_4_in_spec3_y;
-    v->six_r_c_1 = six_r_c_1;
-    v->six_r_s_1 = six_r_s_1;
-    v->six_r_c_2 = six_r_c_2;
-    v->six_r_s_2 = six_r_s_2;
-    v->six_r_c_3 = six_r_c_3;
-    v->six_r_s_3 = six_r_s_3;
-    v->six_r_v_1_t = six_r_v_1_t;
-    v->six_r_v_1_t_2 = six_r_v_1_t_2;
-    v->six_r_d_2_in_spec2_x = six_r_d_2_in_spec2_x;
-    v->six_r_g_in_axes1_x = six_r_g_in_axes1_x;
-    v->six_r_g_in_axes1_y = six_r_g_in_axes1_y;
-    v->six_r_g_in_axes2_x = six_r_g_in_axes2_x;
-    v->six_r_g_in_axes2_y = six_r_g_in_axes2_y;
-    v->six_r_g_in_axes3_x = six_r_g_in_axes3_x;
-    v->six_r_g_in_axes3_y = six_r_g_in_axes3_y;
-    v->six_r_c_4 = six_r_c_4;
-    v->six_r_s_4 = six_r_s_4;
-    v->six_r_c_5 = six_r_c_5;
-    v->six_r_s_5 = six_r_s_5;
-    v->six_r_e_2_in_axes5_y = six_r_e_2_in_axes5_y;
-    v->axis_z_six_r_axes5_x = axis_z_six_r_axes5_x;
-    v->axis_z_six_r_axes5_y = axis_z_six_r_axes5_y;
-    v->axis_z_six_r_axes5_z = axis_z_six_r_axes5_z;
-    v->axis_y_six_r_axes5_x = axis_y_six_r_axes5_x;
-    v->axis_y_six_r_axes5_y = axis_y_six_r_axes5_y;
-    v->axis_y_six_r_axes5_z = axis_y_six_r_axes5_z;
-    v->axis_x_six_r_axes5_x = axis_x_six_r_axes5_x;
-    v->axis_x_six_r_axes5_y = axis_x_six_r_axes5_y;
-    v->axis_x_six_r_axes5_z = axis_x_six_r_axes5_z;
-    v->six_r_r_1_in_axes5_z = six_r_r_1_in_axes5_z;
-    v->six_r_r_1_in_axes5_x = six_r_r_1_in_axes5_x;
-    v->six_r_r_1_in_axes5_y = six_r_r_1_in_axes5_y;
-    v->six_r_e_1_in_axes5_z = six_r_e_1_in_axes5_z;
-    v->six_r_e_1_in_axes5_x = six_r_e_1_in_axes5_x;
-    v->six_r_e_1_in_axes5_y = six_r_e_1_in_axes5_y;
-    v->six_r_v_1_in_axes5_x = six_r_v_1_in_axes5_x;
-    v->six_r_v_1_in_axes5_y = six_r_v_1_in_axes5_y;
-    v->six_r_v_1_in_axes5_z = six_r_v_1_in_axes5_z;
-    v->six_r_e_2_in_axes5_x = six_r_e_2_in_axes5_x;
-    v->six_r_v_2_in_axes5_x = six_r_v_2_in_axes5_x;
-    v->six_r_v_2_in_axes5_y = six_r_v_2_in_axes5_y;
-    v->six_r_v_2_in_axes5_z = six_r_v_2_in_axes5_z;
-    v->six_r_v_3_in_axes5_x = six_r_v_3_in_axes5_x;
-    v->six_r_v_3_in_axes5_y = six_r_v_3_in_axes5_y;
-    v->six_r_v_3_in_axes5_z = six_r_v_3_in_axes5_z;
-    v->six_r_v_4_in_axes5_z = six_r_v_4_in_axes5_z;
-    v->six_r_d_4_in_axes5_x = six_r_d_4_in_axes5_x;
-    v->six_r_d_5_in_axes5_x = six_r_d_5_in_axes5_x;
-    v->six_r_d_2_in_axes5_z = six_r_d_2_in_axes5_z;
-    v->six_r_d_2_in_axes5_x = six_r_d_2_in_axes5_x;
-    v->six_r_d_2_in_axes5_y = six_r_d_2_in_axes5_y;
-    v->six_r_d_3_in_axes5_z = six_r_d_3_in_axes5_z;
-    v->six_r_d_3_in_axes5_x = six_r_d_3_in_axes5_x;
-    v->six_r_d_3_in_axes5_y = six_r_d_3_in_axes5_y;
-    v->six_r_bias_t_8 = six_r_bias_t_8;
-    v->six_r_bias_t_9 = six_r_bias_t_9;
-}
-
-INLINE void stage_six_r_A_X(size_t w, size_t j, const real *A, values_six_r *v)
-{
-    /* (six_r-a_p) acceleration of the connection point without its centripetal part */
-    const real alpha_y = A[4*w + j];
-    const real alpha_z = A[5*w + j];
-    const real t_ddot_x = A[0*w + j];
-    const real six_r_a_p_x = t_ddot_x + alpha_y*v->six_r_q_z - alpha_z*v->six_r_q_y;
-    const real alpha_x = A[3*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real six_r_a_p_y = t_ddot_y + alpha_z*v->six_r_q_x - alpha_x*v->six_r_q_z;
-    const real t_ddot_z = A[2*w + j];
-    const real six_r_a_p_z = t_ddot_z + alpha_x*v->six_r_q_y - alpha_y*v->six_r_q_x;
-    v->six_r_a_p_x = six_r_a_p_x;
-    v->six_r_a_p_y = six_r_a_p_y;
-    v->six_r_a_p_z = six_r_a_p_z;
-}
-
-INLINE void stage_six_r_A_q(size_t w, size_t j, const real *A, values_six_r *v)
-{
-    /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real alpha_x = A[3*w + j];
-    const real alpha_y = A[4*w + j];
-    const real alpha_z = A[5*w + j];
-    const real six_r_alpha_in_axes5_y = alpha_x*v->axis_y_six_r_axes5_x +
-        alpha_y*v->axis_y_six_r_axes5_y + alpha_z*v->axis_y_six_r_axes5_z;
-    v->six_r_alpha_in_axes5_y = six_r_alpha_in_axes5_y;
-}
-
-INLINE void stage_six_r_V_X(size_t w, size_t j, const real *V, values_six_r *v)
-{
-    /* (six_r-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real six_r_S_dot_t_14 = omega_y*v->six_r_q_z - omega_z*v->six_r_q_y;
-    const real omega_x = V[3*w + j];
-    const real six_r_S_dot_t_15 = omega_z*v->six_r_q_x - omega_x*v->six_r_q_z;
-    const real six_r_S_dot_t_16 = omega_x*v->six_r_q_y - omega_y*v->six_r_q_x;
-    const real t_dot_x = V[0*w + j];
-    const real six_r_S_dot_x = t_dot_x + six_r_S_dot_t_14;
-    const real t_dot_y = V[1*w + j];
-    const real six_r_S_dot_y = t_dot_y + six_r_S_dot_t_15;
-    const real t_dot_z = V[2*w + j];
-    const real six_r_S_dot_z = t_dot_z + six_r_S_dot_t_16;
-    v->six_r_S_dot_t_14 = six_r_S_dot_t_14;
-    v->six_r_S_dot_t_15 = six_r_S_dot_t_15;
-    v->six_r_S_dot_t_16 = six_r_S_dot_t_16;
-    v->six_r_S_dot_x = six_r_S_dot_x;
-    v->six_r_S_dot_y = six_r_S_dot_y;
-    v->six_r_S_dot_z = six_r_S_dot_z;
-}
-
-INLINE void stage_six_r_V_q(size_t w, size_t j, const real *V, values_six_r *v)
-{
-    /* (six_r-nd_m1) rate of moment direction 1 */
-    const real omega_x = V[3*w + j];
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real six_r_omega_in_axes5_x = v->axis_x_six_r_axes5_x*omega_x +
-        v->axis_x_six_r_axes5_y*omega_y + v->axis_x_six_r_axes5_z*omega_z;
-    const real six_r_omega_in_axes5_y = v->axis_y_six_r_axes5_x*omega_x +
-        v->axis_y_six_r_axes5_y*omega_y + v->axis_y_six_r_axes5_z*omega_z;
-    const real six_r_omega_in_axes5_z = v->axis_z_six_r_axes5_x*omega_x +
-        v->axis_z_six_r_axes5_y*omega_y + v->axis_z_six_r_axes5_z*omega_z;
-    v->six_r_omega_in_axes5_x = six_r_omega_in_axes5_x;
-    v->six_r_omega_in_axes5_y = six_r_omega_in_axes5_y;
-    v->six_r_omega_in_axes5_z = six_r_omega_in_axes5_z;
-}
-
-INLINE void stage_six_r_X_q(const prepared *m, size_t i, values_six_r *v)
-{
-    /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real six_r_n_m1_t_4 = v->six_r_c_1*v->six_r_n_m1_t + v->six_r_n_m1_t_2*v->six_r_s_1;
-    const real six_r_n_m1_t_5 = v->six_r_c_1*v->six_r_n_m1_t_2 - v->six_r_n_m1_t*v->six_r_s_1;
-    const real six_r_n_m1_t_6 = v->six_r_c_2*v->six_r_n_m1_t_3 + six_r_n_m1_t_4*v->six_r_s_2;
-    const real six_r_n_m1_t_7 = v->six_r_c_2*six_r_n_m1_t_4 - v->six_r_n_m1_t_3*v->six_r_s_2;
-    const real six_r_n_m1_t_8 = six_r_n_m1_t_6*v->six_r_s_3 - v->six_r_c_3*six_r_n_m1_t_7;
-    const real six_r_n_m1_t_9 = v->six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*v->six_r_s_3;
-    const real six_r_n_m1_t_10 = six_r_n_m1_t_5*v->six_r_s_4 - v->six_r_c_4*six_r_n_m1_t_8;
-    const real six_r_n_m1_in_axes5_y = v->six_r_c_5*six_r_n_m1_t_9 +
-        six_r_n_m1_t_10*v->six_r_s_5;
-    /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-    const real six_r_n_m2_in_axes5_z = v->six_r_c_5*six_r_n_m1_t_10 -
-        six_r_n_m1_t_9*v->six_r_s_5;
-    /* (six_r-w_1) force part of reciprocal wrench 1 */
-    const real six_r_end_p1_in_axes5_z = v->six_r_c_4*six_r_n_m1_t_5 +
-        six_r_n_m1_t_8*v->six_r_s_4;
-    const real six_r_w_1_t = v->six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z -
-        v->six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-    const real six_r_w_1_t_2 = v->six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z -
-        v->six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-    const real six_r_w_1_t_3 = v->six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-        v->six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z;
-    const real six_r_w_1_t_4 = v->six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-        v->six_r_c_4*six_r_n_m2_in_axes5_z;
-    const real six_r_w_1_t_5 = m->six_r_size[i]*six_r_w_1_t;
-    const real six_r_w_1_t_6 = m->six_r_size[i]*six_r_w_1_t_3;
-    const real six_r_w_1_t_7 = m->six_r_size[i]*six_r_w_1_t_2;
-    const real six_r_w_1_t_8 = m->six_r_size[i]*six_r_w_1_t_4;
-    const real six_r_w_1_t_9 = m->six_r_size[i]*(-v->six_r_c_5*six_r_n_m2_in_axes5_z -
-        six_r_n_m1_in_axes5_y*v->six_r_s_5);
-    const real six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*v->six_r_s_5*m->six_r_size[i];
-    const real six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*m->six_r_size[i];
-    const real six_r_w_1_t_12 = root(m->six_r_size_t[i] + six_r_w_1_t_11*six_r_w_1_t_11);
-    const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
-    const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*m->six_r_platform_joint_offset_x[i];
-    const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
-    const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
-    const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
-    const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-    const real six_r_w_1_t_18 = v->six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
-        six_r_w_1_t_14*six_r_w_1_t_6;
-    const real six_r_w_1_t_19 = v->six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
-    const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
-    const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-    const real six_r_w_1_t_22 = v->six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-    const real six_r_w_1_t_23 = v->six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
-    const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-    const real six_r_w_1_t_25 = six_r_w_1_t_21 - v->six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-    const real six_r_w_1_t_26 = v->six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
-    const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-    const real six_r_w_1_t_28 = root(v->six_r_v_4_in_axes5_z*v->six_r_v_4_in_axes5_z +
-        six_r_w_1_t_9*six_r_w_1_t_9 + six_r_w_1_t_16*six_r_w_1_t_16 +
-        six_r_w_1_t_17*six_r_w_1_t_17);
-    const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
-    const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-    const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*v->six_r_v_4_in_axes5_z;
-    const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
-    const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
-    const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-        + six_r_w_1_t_31*six_r_w_1_t_5 - v->six_r_v_1_in_axes5_z*six_r_w_1_t_30;
-    const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-    const real six_r_w_1_t_35 = v->six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
-    const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
-    const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
-    const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-    const real six_r_w_1_t_39 = six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32
-        - v->six_r_v_2_in_axes5_z*six_r_w_1_t_30 + six_r_w_1_t_38;
-    const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-    const real six_r_w_1_t_41 = v->six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
-    const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
-    const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-    const real six_r_w_1_t_44 = six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32
-        - v->six_r_v_3_in_axes5_z*six_r_w_1_t_30 + six_r_w_1_t_38;
-    const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-    const real six_r_w_1_t_46 = v->six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
-    const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
-    const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-    const real six_r_w_1_t_49 = root(v->six_r_v_1_in_axes5_x*v->six_r_v_1_in_axes5_x +
-        six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
-        six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
-    const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-    const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*v->six_r_v_1_in_axes5_x;
-    const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
-    const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
-    const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
-    const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-    const real six_r_w_1_t_55 = v->six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
-        six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
-        six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-    const real six_r_w_1_t_56 = v->six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
-    const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
-    const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
-    const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
-    const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-    const real six_r_w_1_t_61 = v->six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
-        six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
-        six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-    const real six_r_w_1_t_62 = v->six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
-    const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
-    const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
-    const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
-    const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
-    const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
-        six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
-        six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
-    const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
-    const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
-    const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
-    const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
-    const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
-    const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
-    const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
-        + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-        six_r_w_1_t_66*six_r_w_1_t_72;
-    const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
-    const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
-    const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
-    const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
-    const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
-    const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
-        six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
-        six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
-    /* (six_r-qd_1) rate of joint 1 */
-    const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
-    v->six_r_n_m1_t_5 = six_r_n_m1_t_5;
-    v->six_r_n_m1_t_8 = six_r_n_m1_t_8;
-    v->six_r_n_m1_t_9 = six_r_n_m1_t_9;
-    v->six_r_n_m1_t_10 = six_r_n_m1_t_10;
-    v->six_r_n_m1_in_axes5_y = six_r_n_m1_in_axes5_y;
-    v->six_r_n_m2_in_axes5_z = six_r_n_m2_in_axes5_z;
-    v->six_r_end_p1_in_axes5_z = six_r_end_p1_in_axes5_z;
-    v->six_r_w_1_t_12 = six_r_w_1_t_12;
-    v->inv_six_r_w_1_t_12 = inv_six_r_w_1_t_12;
-    v->six_r_w_1_t_13 = six_r_w_1_t_13;
-    v->six_r_w_1_t_14 = six_r_w_1_t_14;
-    v->six_r_w_1_t_15 = six_r_w_1_t_15;
-    v->six_r_w_1_t_18 = six_r_w_1_t_18;
-    v->six_r_w_1_t_22 = six_r_w_1_t_22;
-    v->six_r_w_1_t_25 = six_r_w_1_t_25;
-    v->six_r_w_1_t_28 = six_r_w_1_t_28;
-    v->inv_six_r_w_1_t_28 = inv_six_r_w_1_t_28;
-    v->six_r_w_1_t_29 = six_r_w_1_t_29;
-    v->six_r_w_1_t_30 = six_r_w_1_t_30;
-    v->six_r_w_1_t_31 = six_r_w_1_t_31;
-    v->six_r_w_1_t_32 = six_r_w_1_t_32;
-    v->six_r_w_1_t_33 = six_r_w_1_t_33;
-    v->six_r_w_1_t_39 = six_r_w_1_t_39;
-    v->six_r_w_1_t_44 = six_r_w_1_t_44;
-    v->six_r_w_1_t_49 = six_r_w_1_t_49;
-    v->inv_six_r_w_1_t_49 = inv_six_r_w_1_t_49;
-    v->six_r_w_1_t_50 = six_r_w_1_t_50;
-    v->six_r_w_1_t_51 = six_r_w_1_t_51;
-    v->six_r_w_1_t_52 = six_r_w_1_t_52;
-    v->six_r_w_1_t_53 = six_r_w_1_t_53;
-    v->six_r_w_1_t_54 = six_r_w_1_t_54;
-    v->six_r_w_1_t_55 = six_r_w_1_t_55;
-    v->six_r_w_1_t_61 = six_r_w_1_t_61;
-    v->six_r_w_1_t_67 = six_r_w_1_t_67;
-    v->inv_six_r_w_1_t_67 = inv_six_r_w_1_t_67;
-    v->six_r_w_1_t_68 = six_r_w_1_t_68;
-    v->six_r_w_1_t_69 = six_r_w_1_t_69;
-    v->six_r_w_1_t_70 = six_r_w_1_t_70;
-    v->six_r_w_1_t_71 = six_r_w_1_t_71;
-    v->six_r_w_1_t_72 = six_r_w_1_t_72;
-    v->six_r_w_1_t_73 = six_r_w_1_t_73;
-    v->six_r_w_1_t_74 = six_r_w_1_t_74;
-    v->six_r_w_1_t_75 = six_r_w_1_t_75;
-    v->six_r_w_1_t_76 = six_r_w_1_t_76;
-    v->six_r_w_1_t_77 = six_r_w_1_t_77;
-    v->six_r_w_1_t_78 = six_r_w_1_t_78;
-    v->six_r_w_1_t_79 = six_r_w_1_t_79;
-    v->inv_six_r_w_1_t_79 = inv_six_r_w_1_t_79;
-}
-
-INLINE void stage_six_r_A_V_X(size_t w, size_t j, const real *V, values_six_r *v)
-{
-    /* (six_r-S_ddot) acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real six_r_S_ddot_x = omega_y*v->six_r_S_dot_t_16 - omega_z*v->six_r_S_dot_t_15 +
-        v->six_r_a_p_x;
-    const real omega_x = V[3*w + j];
-    const real six_r_S_ddot_y = omega_z*v->six_r_S_dot_t_14 - omega_x*v->six_r_S_dot_t_16 +
-        v->six_r_a_p_y;
-    const real six_r_S_ddot_z = omega_x*v->six_r_S_dot_t_15 - omega_y*v->six_r_S_dot_t_14 +
-        v->six_r_a_p_z;
-    v->six_r_S_ddot_x = six_r_S_ddot_x;
-    v->six_r_S_ddot_y = six_r_S_ddot_y;
-    v->six_r_S_ddot_z = six_r_S_ddot_z;
-}
-
-INLINE void stage_six_r_A_X_q(size_t w, size_t j, const real *A, values_six_r *v)
-{
-    /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real alpha_x = A[3*w + j];
-    const real alpha_y = A[4*w + j];
-    const real alpha_z = A[5*w + j];
-    const real six_r_etad_1_t = v->six_r_n_m2_in_axes5_z*(alpha_x*v->axis_x_six_r_axes5_x +
-        alpha_y*v->axis_x_six_r_axes5_y + alpha_z*v->axis_x_six_r_axes5_z) -
-        v->six_r_alpha_in_axes5_y*v->six_r_n_m1_in_axes5_y;
-    /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
-    const real six_r_etad_2_t = v->six_r_alpha_in_axes5_y*v->six_r_end_p1_in_axes5_z -
-        v->six_r_n_m2_in_axes5_z*(alpha_x*v->axis_z_six_r_axes5_x +
-        alpha_y*v->axis_z_six_r_axes5_y + alpha_z*v->axis_z_six_r_axes5_z);
-    v->six_r_etad_1_t = six_r_etad_1_t;
-    v->six_r_etad_2_t = six_r_etad_2_t;
-}
-
-INLINE void stage_six_r_V_X_q(values_six_r *v)
-{
-    /* (six_r-S_dot) velocity of the connection point */
-    const real six_r_S_dot_in_axes5_x = v->axis_x_six_r_axes5_x*v->six_r_S_dot_x +
-        v->axis_x_six_r_axes5_y*v->six_r_S_dot_y + v->axis_x_six_r_axes5_z*v->six_r_S_dot_z;
-    const real six_r_S_dot_in_axes5_y = v->axis_y_six_r_axes5_x*v->six_r_S_dot_x +
-        v->axis_y_six_r_axes5_y*v->six_r_S_dot_y + v->axis_y_six_r_axes5_z*v->six_r_S_dot_z;
-    const real six_r_S_dot_in_axes5_z = v->axis_z_six_r_axes5_x*v->six_r_S_dot_x +
-        v->axis_z_six_r_axes5_y*v->six_r_S_dot_y + v->axis_z_six_r_axes5_z*v->six_r_S_dot_z;
-    /* (six_r-nd_m1) rate of moment direction 1 */
-    const real six_r_nd_m1_t = v->six_r_n_m1_in_axes5_y*v->six_r_omega_in_axes5_z -
-        v->six_r_end_p1_in_axes5_z*v->six_r_omega_in_axes5_x;
-    /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
-    const real six_r_eta_1 = v->six_r_n_m1_in_axes5_y*v->six_r_omega_in_axes5_y -
-        v->six_r_n_m2_in_axes5_z*v->six_r_omega_in_axes5_x;
-    /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
-    const real six_r_eta_2_t = v->six_r_end_p1_in_axes5_z*v->six_r_omega_in_axes5_y -
-        v->six_r_n_m2_in_axes5_z*v->six_r_omega_in_axes5_z;
-    v->six_r_S_dot_in_axes5_x = six_r_S_dot_in_axes5_x;
-    v->six_r_S_dot_in_axes5_y = six_r_S_dot_in_axes5_y;
-    v->six_r_S_dot_in_axes5_z = six_r_S_dot_in_axes5_z;
-    v->six_r_nd_m1_t = six_r_nd_m1_t;
-    v->six_r_eta_1 = six_r_eta_1;
-    v->six_r_eta_2_t = six_r_eta_2_t;
-}
-
-INLINE void stage_six_r_H_condition(const prepared *m, size_t i, values_six_r *v)
-{
-    /* (six_r-w_2) force part of reciprocal wrench 2 */
-    const real six_r_w_2_t = v->six_r_c_3*v->six_r_s_4;
-    const real six_r_w_2_t_2 = v->six_r_s_3*v->six_r_s_4;
-    const real six_r_w_2_t_3 = v->six_r_c_2*six_r_w_2_t_2 + v->six_r_s_2*six_r_w_2_t;
-    const real six_r_w_2_t_4 = v->six_r_s_2*six_r_w_2_t_2 - v->six_r_c_2*six_r_w_2_t;
-    const real six_r_w_2_t_5 = v->six_r_c_1*six_r_w_2_t_4 - v->six_r_c_4*v->six_r_s_1;
-    const real six_r_w_2_t_6 = v->six_r_c_1*v->six_r_c_4 + v->six_r_s_1*six_r_w_2_t_4;
-    const real axis_z_six_r_axes5_x = m->six_r_base_frame_xx[i]*six_r_w_2_t_3 +
-        m->six_r_base_frame_xy[i]*six_r_w_2_t_5 + m->six_r_base_frame_xz[i]*six_r_w_2_t_6;
-    const real axis_z_six_r_axes5_y = m->six_r_base_frame_yx[i]*six_r_w_2_t_3 +
-        m->six_r_base_frame_yy[i]*six_r_w_2_t_5 + m->six_r_base_frame_yz[i]*six_r_w_2_t_6;
-    const real axis_z_six_r_axes5_z = m->six_r_base_frame_zx[i]*six_r_w_2_t_3 +
-        m->six_r_base_frame_zy[i]*six_r_w_2_t_5 + m->six_r_base_frame_zz[i]*six_r_w_2_t_6;
-    const real six_r_w_2_t_7 = v->six_r_c_4*v->six_r_c_5;
-    const real six_r_w_2_t_8 = v->six_r_s_3*v->six_r_s_5 - v->six_r_c_3*six_r_w_2_t_7;
-    const real six_r_w_2_t_9 = -v->six_r_c_3*v->six_r_s_5 - v->six_r_s_3*six_r_w_2_t_7;
-    const real six_r_w_2_t_10 = v->six_r_c_2*six_r_w_2_t_9 + v->six_r_s_2*six_r_w_2_t_8;
-    const real six_r_w_2_t_11 = v->six_r_s_2*six_r_w_2_t_9 - v->six_r_c_2*six_r_w_2_t_8;
-    const real six_r_w_2_t_12 = v->six_r_c_1*six_r_w_2_t_11 -
-        v->six_r_e_2_in_axes5_y*v->six_r_s_1;
-    const real six_r_w_2_t_13 = v->six_r_c_1*v->six_r_e_2_in_axes5_y +
-        v->six_r_s_1*six_r_w_2_t_11;
-    const real axis_y_six_r_axes5_x = m->six_r_base_frame_xx[i]*six_r_w_2_t_10 +
-        m->six_r_base_frame_xy[i]*six_r_w_2_t_12 + m->six_r_base_frame_xz[i]*six_r_w_2_t_13;
-    const real axis_y_six_r_axes5_y = m->six_r_base_frame_yx[i]*six_r_w_2_t_10 +
-        m->six_r_base_frame_yy[i]*six_r_w_2_t_12 + m->six_r_base_frame_yz[i]*six_r_w_2_t_13;
-    const real axis_y_six_r_axes5_z = m->six_r_base_frame_zx[i]*six_r_w_2_t_10 +
-        m->six_r_base_frame_zy[i]*six_r_w_2_t_12 + m->six_r_base_frame_zz[i]*six_r_w_2_t_13;
-    const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
-        axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
-    const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
-        axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
-    const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
-        axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-    const real six_r_w_2_t_14 = v->inv_six_r_w_1_t_67*v->inv_six_r_w_1_t_79*v->six_r_w_1_t_73;
-    const real six_r_w_2_in_axes5_x = v->inv_six_r_w_1_t_67*v->six_r_w_1_t_68 -
-        v->inv_six_r_w_1_t_79*v->six_r_w_1_t_74*six_r_w_2_t_14;
-    const real six_r_w_2_in_axes5_y = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_75*six_r_w_2_t_14 -
-        v->inv_six_r_w_1_t_67*v->six_r_w_1_t_69;
-    const real six_r_w_2_in_axes5_z = v->inv_six_r_w_1_t_67*v->six_r_w_1_t_70 -
-        v->inv_six_r_w_1_t_79*v->six_r_w_1_t_76*six_r_w_2_t_14;
-    const real six_r_w_2_x = axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x +
-        axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z;
-    const real six_r_w_2_y = axis_x_six_r_axes5_y*six_r_w_2_in_axes5_x +
-        axis_y_six_r_axes5_y*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_y*six_r_w_2_in_axes5_z;
-    const real six_r_w_2_z = axis_x_six_r_axes5_z*six_r_w_2_in_axes5_x +
-        axis_y_six_r_axes5_z*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z;
-    /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
-    const real six_r_m1_w_2 = m->six_r_size[i]*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_71 -
-        v->inv_six_r_w_1_t_79*v->six_r_w_1_t_77*six_r_w_2_t_14);
-    /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
-    const real six_r_m2_w_2 = m->six_r_size[i]*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_72 -
-        v->inv_six_r_w_1_t_79*v->six_r_w_1_t_78*six_r_w_2_t_14);
-    /* (six_r-o_2) moment part of reciprocal wrench 2 */
-    const real six_r_o_2_x = six_r_m1_w_2*(axis_y_six_r_axes5_x*v->six_r_n_m1_in_axes5_y -
-        axis_x_six_r_axes5_x*v->six_r_n_m2_in_axes5_z) +
-        six_r_m2_w_2*(axis_z_six_r_axes5_x*v->six_r_n_m2_in_axes5_z -
-        axis_y_six_r_axes5_x*v->six_r_end_p1_in_axes5_z);
-    const real six_r_o_2_y = six_r_m1_w_2*(axis_y_six_r_axes5_y*v->six_r_n_m1_in_axes5_y -
-        axis_x_six_r_axes5_y*v->six_r_n_m2_in_axes5_z) +
-        six_r_m2_w_2*(axis_z_six_r_axes5_y*v->six_r_n_m2_in_axes5_z -
-        axis_y_six_r_axes5_y*v->six_r_end_p1_in_axes5_z);
-    const real six_r_o_2_z = six_r_m1_w_2*(axis_y_six_r_axes5_z*v->six_r_n_m1_in_axes5_y -
-        axis_x_six_r_axes5_z*v->six_r_n_m2_in_axes5_z) +
-        six_r_m2_w_2*(axis_z_six_r_axes5_z*v->six_r_n_m2_in_axes5_z -
-        axis_y_six_r_axes5_z*v->six_r_end_p1_in_axes5_z);
-    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-    const real six_r_H_a_2_x = six_r_o_2_x + v->six_r_q_y*six_r_w_2_z -
-        v->six_r_q_z*six_r_w_2_y;
-    const real six_r_H_a_2_y = six_r_o_2_y + v->six_r_q_z*six_r_w_2_x -
-        v->six_r_q_x*six_r_w_2_z;
-    const real six_r_H_a_2_z = six_r_o_2_z + v->six_r_q_x*six_r_w_2_y -
-        v->six_r_q_y*six_r_w_2_x;
-    v->six_r_w_2_x = six_r_w_2_x;
-    v->six_r_w_2_y = six_r_w_2_y;
-    v->six_r_w_2_z = six_r_w_2_z;
-    v->six_r_H_a_2_x = six_r_H_a_2_x;
-    v->six_r_H_a_2_y = six_r_H_a_2_y;
-    v->six_r_H_a_2_z = six_r_H_a_2_z;
-}
-
-INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real
-    *joints, values_six_r *v)
-{
-    static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
-    /* (six_r-h_4) first moment of link 4 about the origin of link 4 */
-    const real six_r_h_4_in_spec2_z = v->six_r_e_2_in_axes5_z*m->six_r_h_4_in_spec4_z[i] +
+    v->six_r_e_2_in_axes5_z = cosine(six_r_q_4);
+    v->six_r_h_4_t = sine(six_r_q_4);
+    v->six_r_h_4_in_spec2_z = v->six_r_e_2_in_axes5_z*m->six_r_h_4_in_spec4_z[i] +
         m->six_r_h_4_in_spec4_y[i]*v->six_r_h_4_t;
+    v->six_r_h_4_in_spec3_y = v->six_r_e_2_in_axes5_z*m->six_r_h_4_in_spec4_y[i] -
+        m->six_r_h_4_in_spec4_z[i]*v->six_r_h_4_t;
     /* (six_r-J_5) inertia tensor of link 5 about the connection point */
     const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-    const real six_r_e_4_in_axes5_x = cosine(six_r_q_5);
-    const real six_r_J_5_t = sine(six_r_q_5);
-    const real six_r_J_5_in_axes4_yz = m->six_r_J_5_in_spec5_xz[i]*six_r_e_4_in_axes5_x -
-        m->six_r_J_5_in_spec5_yz[i]*six_r_J_5_t;
+    v->six_r_e_4_in_axes5_x = cosine(six_r_q_5);
+    v->six_r_J_5_t = sine(six_r_q_5);
+    /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
+    v->six_r_c_1 = cosine(six_r_q_1);
+    /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
+    v->six_r_s_1 = sine(six_r_q_1);
+    /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
+    v->six_r_c_2 = cosine(six_r_q_2);
+    /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
+    v->six_r_s_2 = sine(six_r_q_2);
+    /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
+    const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
+    v->six_r_c_3 = cosine(six_r_q_3);
+    /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
+    v->six_r_s_3 = sine(six_r_q_3);
     /* (six_r-S_dot) velocity of the connection point */
-    const real six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*v->six_r_h_4_t;
+    v->six_r_e_2_in_axes5_y = v->six_r_e_4_in_axes5_x*v->six_r_h_4_t;
+    const real six_r_S_dot_t = v->six_r_c_3*v->six_r_h_4_t;
+    const real six_r_S_dot_t_2 = v->six_r_h_4_t*v->six_r_s_3;
+    const real six_r_S_dot_t_3 = six_r_S_dot_t*v->six_r_s_2 + six_r_S_dot_t_2*v->six_r_c_2;
+    const real six_r_S_dot_t_4 = six_r_S_dot_t_2*v->six_r_s_2 - six_r_S_dot_t*v->six_r_c_2;
+    const real six_r_S_dot_t_5 = six_r_S_dot_t_4*v->six_r_c_1 -
+        v->six_r_e_2_in_axes5_z*v->six_r_s_1;
+    const real six_r_S_dot_t_6 = v->six_r_c_1*v->six_r_e_2_in_axes5_z +
+        six_r_S_dot_t_4*v->six_r_s_1;
+    v->axis_z_six_r_axes5_x = six_r_S_dot_t_3*m->six_r_base_frame_xx[i] +
+        six_r_S_dot_t_5*m->six_r_base_frame_xy[i] + six_r_S_dot_t_6*m->six_r_base_frame_xz[i];
+    v->axis_z_six_r_axes5_y = six_r_S_dot_t_3*m->six_r_base_frame_yx[i] +
+        six_r_S_dot_t_5*m->six_r_base_frame_yy[i] + six_r_S_dot_t_6*m->six_r_base_frame_yz[i];
+    v->axis_z_six_r_axes5_z = six_r_S_dot_t_3*m->six_r_base_frame_zx[i] +
+        six_r_S_dot_t_5*m->six_r_base_frame_zy[i] + six_r_S_dot_t_6*m->six_r_base_frame_zz[i];
+    const real six_r_S_dot_t_7 = v->six_r_e_2_in_axes5_z*v->six_r_e_4_in_axes5_x;
+    const real six_r_S_dot_t_8 = v->six_r_J_5_t*v->six_r_s_3 - six_r_S_dot_t_7*v->six_r_c_3;
+    const real six_r_S_dot_t_9 = -v->six_r_J_5_t*v->six_r_c_3 - six_r_S_dot_t_7*v->six_r_s_3;
+    const real six_r_S_dot_t_10 = six_r_S_dot_t_8*v->six_r_s_2 + six_r_S_dot_t_9*v->six_r_c_2;
+    const real six_r_S_dot_t_11 = six_r_S_dot_t_9*v->six_r_s_2 - six_r_S_dot_t_8*v->six_r_c_2;
+    const real six_r_S_dot_t_12 = six_r_S_dot_t_11*v->six_r_c_1 -
+        v->six_r_e_2_in_axes5_y*v->six_r_s_1;
+    const real six_r_S_dot_t_13 = v->six_r_c_1*v->six_r_e_2_in_axes5_y +
+        six_r_S_dot_t_11*v->six_r_s_1;
+    v->axis_y_six_r_axes5_x = six_r_S_dot_t_10*m->six_r_base_frame_xx[i] +
+        six_r_S_dot_t_12*m->six_r_base_frame_xy[i] +
+        six_r_S_dot_t_13*m->six_r_base_frame_xz[i];
+    v->axis_y_six_r_axes5_y = six_r_S_dot_t_10*m->six_r_base_frame_yx[i] +
+        six_r_S_dot_t_12*m->six_r_base_frame_yy[i] +
+        six_r_S_dot_t_13*m->six_r_base_frame_yz[i];
+    v->axis_y_six_r_axes5_z = six_r_S_dot_t_10*m->six_r_base_frame_zx[i] +
+        six_r_S_dot_t_12*m->six_r_base_frame_zy[i] +
+        six_r_S_dot_t_13*m->six_r_base_frame_zz[i];
+    v->axis_x_six_r_axes5_x = v->axis_y_six_r_axes5_y*v->axis_z_six_r_axes5_z -
+        v->axis_y_six_r_axes5_z*v->axis_z_six_r_axes5_y;
+    v->axis_x_six_r_axes5_y = v->axis_y_six_r_axes5_z*v->axis_z_six_r_axes5_x -
+        v->axis_y_six_r_axes5_x*v->axis_z_six_r_axes5_z;
+    v->axis_x_six_r_axes5_z = v->axis_y_six_r_axes5_x*v->axis_z_six_r_axes5_y -
+        v->axis_y_six_r_axes5_y*v->axis_z_six_r_axes5_x;
     /* (six_r-r_4) from joint 4 to the connection point, along the links */
-    const real six_r_r_4_in_axes4_x = six_r_J_5_t*m->six_r_platform_joint_offset_x[i];
+    const real six_r_r_4_in_axes4_x = v->six_r_J_5_t*m->six_r_platform_joint_offset_x[i];
     const real six_r_r_4_in_axes4_z = m->six_r_joint5_offset_x[i] +
-        six_r_e_4_in_axes5_x*m->six_r_platform_joint_offset_x[i];
+        v->six_r_e_4_in_axes5_x*m->six_r_platform_joint_offset_x[i];
     const real six_r_r_4_in_axes3_x = -v->six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x;
     const real six_r_r_4_in_axes3_z = v->six_r_h_4_t*six_r_r_4_in_axes4_x;
     /* (six_r-r_3) from joint 3 to the connection point, along the links */
@@ -2693,10 +2133,10 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_r_3_t_2 = v->six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z;
     const real six_r_r_3_t_3 = six_r_r_3_t - v->six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x;
     const real six_r_r_3_in_axes5_z = v->six_r_h_4_t*six_r_r_4_in_axes3_x + six_r_r_3_t_2;
-    const real six_r_r_3_in_axes5_x = six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y +
-        six_r_J_5_t*six_r_r_3_t_3;
-    const real six_r_r_3_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_3_t_3 -
-        six_r_J_5_t*six_r_r_3_in_axes3_y;
+    const real six_r_r_3_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y +
+        v->six_r_J_5_t*six_r_r_3_t_3;
+    const real six_r_r_3_in_axes5_y = v->six_r_e_4_in_axes5_x*six_r_r_3_t_3 -
+        v->six_r_J_5_t*six_r_r_3_in_axes3_y;
     /* (six_r-r_2) from joint 2 to the connection point, along the links */
     const real six_r_r_2_in_axes2_x = m->six_r_joint3_offset_x[i] +
         v->six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*v->six_r_s_3;
@@ -2708,10 +2148,10 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
         v->six_r_c_3*six_r_r_2_in_axes2_x;
     const real six_r_r_2_t_3 = six_r_r_3_t - v->six_r_e_2_in_axes5_z*six_r_r_2_t;
     const real six_r_r_2_in_axes5_z = six_r_r_3_t_2 + v->six_r_h_4_t*six_r_r_2_t;
-    const real six_r_r_2_in_axes5_x = six_r_e_4_in_axes5_x*six_r_r_2_t_2 +
-        six_r_J_5_t*six_r_r_2_t_3;
-    const real six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 -
-        six_r_J_5_t*six_r_r_2_t_2;
+    const real six_r_r_2_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_r_2_t_2 +
+        v->six_r_J_5_t*six_r_r_2_t_3;
+    const real six_r_r_2_in_axes5_y = v->six_r_e_4_in_axes5_x*six_r_r_2_t_3 -
+        v->six_r_J_5_t*six_r_r_2_t_2;
     /* (six_r-r_1) from joint 1 to the connection point, along the links */
     const real six_r_r_1_in_axes1_z = m->six_r_joint2_offset_x[i] -
         six_r_r_3_in_axes2_y*v->six_r_s_2 + v->six_r_c_2*six_r_r_2_in_axes2_x;
@@ -2722,77 +2162,848 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_r_1_t_3 = six_r_r_1_t*v->six_r_s_3 - v->six_r_c_3*six_r_r_1_t_2;
     const real six_r_r_1_t_4 = v->six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*v->six_r_s_3;
     const real six_r_r_1_t_5 = six_r_r_3_t - v->six_r_e_2_in_axes5_z*six_r_r_1_t_3;
-    const real six_r_r_1_in_axes5_z = six_r_r_3_t_2 + v->six_r_h_4_t*six_r_r_1_t_3;
-    const real six_r_r_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_r_1_t_4 +
-        six_r_J_5_t*six_r_r_1_t_5;
-    const real six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 -
-        six_r_J_5_t*six_r_r_1_t_4;
+    v->six_r_r_1_in_axes5_z = six_r_r_3_t_2 + v->six_r_h_4_t*six_r_r_1_t_3;
+    v->six_r_r_1_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_r_1_t_4 +
+        v->six_r_J_5_t*six_r_r_1_t_5;
+    v->six_r_r_1_in_axes5_y = v->six_r_e_4_in_axes5_x*six_r_r_1_t_5 -
+        v->six_r_J_5_t*six_r_r_1_t_4;
     /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-    const real six_r_v_1_t_3 = v->six_r_e_2_in_axes5_z*v->six_r_v_1_t;
-    const real six_r_e_1_in_axes5_z = v->six_r_h_4_t*v->six_r_v_1_t;
-    const real six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*v->six_r_v_1_t_2 -
-        six_r_J_5_t*six_r_v_1_t_3;
-    const real six_r_e_1_in_axes5_y = -six_r_J_5_t*v->six_r_v_1_t_2 -
-        six_r_e_4_in_axes5_x*six_r_v_1_t_3;
-    const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
-        six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
-    const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
-        six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
-    const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
-        six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
+    const real six_r_v_1_t = v->six_r_c_2*v->six_r_s_3 + v->six_r_c_3*v->six_r_s_2;
+    const real six_r_v_1_t_2 = v->six_r_c_2*v->six_r_c_3 - v->six_r_s_2*v->six_r_s_3;
+    const real six_r_v_1_t_3 = v->six_r_e_2_in_axes5_z*six_r_v_1_t;
+    v->six_r_e_1_in_axes5_z = v->six_r_h_4_t*six_r_v_1_t;
+    v->six_r_e_1_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_v_1_t_2 -
+        v->six_r_J_5_t*six_r_v_1_t_3;
+    v->six_r_e_1_in_axes5_y = -v->six_r_J_5_t*six_r_v_1_t_2 -
+        v->six_r_e_4_in_axes5_x*six_r_v_1_t_3;
+    v->six_r_v_1_in_axes5_x = v->six_r_e_1_in_axes5_y*v->six_r_r_1_in_axes5_z -
+        v->six_r_e_1_in_axes5_z*v->six_r_r_1_in_axes5_y;
+    v->six_r_v_1_in_axes5_y = v->six_r_e_1_in_axes5_z*v->six_r_r_1_in_axes5_x -
+        v->six_r_e_1_in_axes5_x*v->six_r_r_1_in_axes5_z;
+    v->six_r_v_1_in_axes5_z = v->six_r_e_1_in_axes5_x*v->six_r_r_1_in_axes5_y -
+        v->six_r_e_1_in_axes5_y*v->six_r_r_1_in_axes5_x;
     /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-    const real six_r_e_2_in_axes5_x = six_r_J_5_t*v->six_r_h_4_t;
-    const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
+    v->six_r_e_2_in_axes5_x = v->six_r_J_5_t*v->six_r_h_4_t;
+    v->six_r_v_2_in_axes5_x = v->six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
         v->six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y;
-    const real six_r_v_2_in_axes5_y = v->six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x -
-        six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
-    const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
+    v->six_r_v_2_in_axes5_y = v->six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x -
+        v->six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
+    v->six_r_v_2_in_axes5_z = v->six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
+        v->six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
     /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-    const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
+    v->six_r_v_3_in_axes5_x = v->six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
         v->six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y;
-    const real six_r_v_3_in_axes5_y = v->six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x -
-        six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
-    const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
+    v->six_r_v_3_in_axes5_y = v->six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x -
+        v->six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
+    v->six_r_v_3_in_axes5_z = v->six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
+        v->six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
     /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-    const real six_r_v_4_in_axes5_z = six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x +
-        six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z) +
-        six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
-        six_r_J_5_t*six_r_r_4_in_axes4_z);
+    v->six_r_v_4_in_axes5_z = v->six_r_J_5_t*(v->six_r_J_5_t*six_r_r_4_in_axes4_x +
+        v->six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z) +
+        v->six_r_e_4_in_axes5_x*(v->six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
+        v->six_r_J_5_t*six_r_r_4_in_axes4_z);
+    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
+    v->six_r_d_2_in_spec2_x = v->six_r_c_2*m->six_r_joint2_offset_x[i];
+    v->six_r_bias_t_3 = m->six_r_joint2_offset_x[i]*v->six_r_s_2;
+    const real six_r_bias_t_4 = v->six_r_bias_t_3*v->six_r_c_3 +
+        v->six_r_d_2_in_spec2_x*v->six_r_s_3;
+    const real six_r_bias_t_5 = v->six_r_c_3*v->six_r_d_2_in_spec2_x -
+        v->six_r_bias_t_3*v->six_r_s_3;
+    const real six_r_bias_t_6 = six_r_bias_t_4*v->six_r_e_2_in_axes5_z;
+    v->six_r_d_2_in_axes5_z = six_r_bias_t_4*v->six_r_h_4_t;
+    v->six_r_d_2_in_axes5_x = six_r_bias_t_5*v->six_r_e_4_in_axes5_x -
+        v->six_r_J_5_t*six_r_bias_t_6;
+    v->six_r_d_2_in_axes5_y = -v->six_r_J_5_t*six_r_bias_t_5 -
+        six_r_bias_t_6*v->six_r_e_4_in_axes5_x;
+    const real six_r_bias_t_10 = m->six_r_joint3_offset_x[i]*v->six_r_s_3;
+    const real six_r_bias_t_11 = v->six_r_c_3*m->six_r_joint3_offset_x[i];
+    const real six_r_bias_t_12 = six_r_bias_t_10*v->six_r_e_2_in_axes5_z;
+    v->six_r_d_3_in_axes5_z = six_r_bias_t_10*v->six_r_h_4_t;
+    v->six_r_d_3_in_axes5_x = six_r_bias_t_11*v->six_r_e_4_in_axes5_x -
+        v->six_r_J_5_t*six_r_bias_t_12;
+    v->six_r_d_3_in_axes5_y = -v->six_r_J_5_t*six_r_bias_t_11 -
+        six_r_bias_t_12*v->six_r_e_4_in_axes5_x;
+    v->six_r_d_4_in_axes5_x = v->six_r_e_4_in_axes5_x*m->six_r_joint4_offset_x[i];
+    v->six_r_bias_t_16 = v->six_r_J_5_t*m->six_r_joint4_offset_x[i];
+    v->six_r_d_5_in_axes5_x = v->six_r_e_4_in_axes5_x*m->six_r_joint5_offset_x[i];
+    v->six_r_bias_t_17 = v->six_r_J_5_t*m->six_r_joint5_offset_x[i];
+    /* (six_r-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real six_r_g_in_axes1_x = m->six_r_acc_3_t[i]*v->six_r_c_1 +
+        m->six_r_acc_3_t_2[i]*v->six_r_s_1;
+    v->six_r_g_in_axes1_y = m->six_r_acc_3_t_2[i]*v->six_r_c_1 -
+        m->six_r_acc_3_t[i]*v->six_r_s_1;
+    v->six_r_g_in_axes2_x = v->six_r_c_2*m->six_r_g_in_axes1_z[i] +
+        six_r_g_in_axes1_x*v->six_r_s_2;
+    v->six_r_g_in_axes2_y = v->six_r_c_2*six_r_g_in_axes1_x -
+        m->six_r_g_in_axes1_z[i]*v->six_r_s_2;
+    v->six_r_g_in_axes3_x = v->six_r_g_in_axes2_x*v->six_r_s_3 -
+        v->six_r_c_3*v->six_r_g_in_axes2_y;
+    v->six_r_g_in_axes3_y = v->six_r_c_3*v->six_r_g_in_axes2_x +
+        v->six_r_g_in_axes2_y*v->six_r_s_3;
+    /* (six_r-acc_4) acceleration of the reference point of link 4, less gravity */
+    v->six_r_g_in_axes4_x = v->six_r_g_in_axes1_y*v->six_r_h_4_t -
+        v->six_r_e_2_in_axes5_z*v->six_r_g_in_axes3_x;
+    v->six_r_g_in_axes4_y = v->six_r_e_2_in_axes5_z*v->six_r_g_in_axes1_y +
+        v->six_r_g_in_axes3_x*v->six_r_h_4_t;
+    /* (six_r-acc_5) acceleration of the reference point of link 5, less gravity */
+    v->six_r_g_in_axes5_x = v->axis_x_six_r_axes5_x*m->gravity_x +
+        v->axis_x_six_r_axes5_y*m->gravity_y + v->axis_x_six_r_axes5_z*m->gravity_z;
+    v->six_r_g_in_axes5_y = v->axis_y_six_r_axes5_x*m->gravity_x +
+        v->axis_y_six_r_axes5_y*m->gravity_y + v->axis_y_six_r_axes5_z*m->gravity_z;
+    v->six_r_g_in_axes5_z = v->axis_z_six_r_axes5_x*m->gravity_x +
+        v->axis_z_six_r_axes5_y*m->gravity_y + v->axis_z_six_r_axes5_z*m->gravity_z;
+    /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
+       inertia and weight */
+    v->six_r_d_Gamma_4_t = v->six_r_J_5_t*m->six_r_h_5_in_spec5_x[i] +
+        v->six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_y[i];
+    /* (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    v->six_r_mu_2_t = v->six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i] -
+        v->six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i];
+    v->six_r_mu_2_t_2 = v->six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_z[i] -
+        v->six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_x[i];
+    v->six_r_mu_2_t_3 = v->six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_x[i] -
+        v->six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_y[i];
+    /* (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    v->six_r_mu_1_t = v->six_r_g_in_axes1_y*m->six_r_h_1_in_spec1_y[i] -
+        six_r_g_in_axes1_x*m->six_r_h_1_in_spec1_z[i];
+}
+
+INLINE void stage_six_r_A_q(size_t w, size_t j, const real *A, values_six_r *v)
+{
+    /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real alpha_x = A[3*w + j];
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    v->six_r_alpha_in_axes5_y = alpha_x*v->axis_y_six_r_axes5_x +
+        alpha_y*v->axis_y_six_r_axes5_y + alpha_z*v->axis_y_six_r_axes5_z;
+}
+
+INLINE void stage_six_r_V_X(size_t w, size_t j, const real *V, values_six_r *v)
+{
+    /* (six_r-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    v->six_r_S_dot_t_14 = omega_y*v->six_r_q_z - omega_z*v->six_r_q_y;
+    const real omega_x = V[3*w + j];
+    v->six_r_S_dot_t_15 = omega_z*v->six_r_q_x - omega_x*v->six_r_q_z;
+    v->six_r_S_dot_t_16 = omega_x*v->six_r_q_y - omega_y*v->six_r_q_x;
+    const real t_dot_x = V[0*w + j];
+    v->six_r_S_dot_x = t_dot_x + v->six_r_S_dot_t_14;
+    const real t_dot_y = V[1*w + j];
+    v->six_r_S_dot_y = t_dot_y + v->six_r_S_dot_t_15;
+    const real t_dot_z = V[2*w + j];
+    v->six_r_S_dot_z = t_dot_z + v->six_r_S_dot_t_16;
+}
+
+INLINE void stage_six_r_V_q(size_t w, size_t j, const real *V, values_six_r *v)
+{
+    /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
+    const real omega_x = V[3*w + j];
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    v->six_r_omega_in_axes5_x = v->axis_x_six_r_axes5_x*omega_x +
+        v->axis_x_six_r_axes5_y*omega_y + v->axis_x_six_r_axes5_z*omega_z;
+    v->six_r_omega_in_axes5_y = v->axis_y_six_r_axes5_x*omega_x +
+        v->axis_y_six_r_axes5_y*omega_y + v->axis_y_six_r_axes5_z*omega_z;
+    /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
+    v->six_r_omega_in_axes5_z = v->axis_z_six_r_axes5_x*omega_x +
+        v->axis_z_six_r_axes5_y*omega_y + v->axis_z_six_r_axes5_z*omega_z;
+}
+
+INLINE void stage_six_r_X_q(const prepared *m, size_t i, values_six_r *v)
+{
+    /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real six_r_n_m1_t_4 = v->six_r_c_1*v->six_r_n_m1_t + v->six_r_n_m1_t_2*v->six_r_s_1;
+    const real six_r_n_m1_t_5 = v->six_r_c_1*v->six_r_n_m1_t_2 - v->six_r_n_m1_t*v->six_r_s_1;
+    const real six_r_n_m1_t_6 = v->six_r_c_2*v->six_r_n_m1_t_3 + six_r_n_m1_t_4*v->six_r_s_2;
+    const real six_r_n_m1_t_7 = v->six_r_c_2*six_r_n_m1_t_4 - v->six_r_n_m1_t_3*v->six_r_s_2;
+    const real six_r_n_m1_t_8 = six_r_n_m1_t_6*v->six_r_s_3 - v->six_r_c_3*six_r_n_m1_t_7;
+    const real six_r_n_m1_t_9 = v->six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*v->six_r_s_3;
+    const real six_r_n_m1_t_10 = v->six_r_h_4_t*six_r_n_m1_t_5 -
+        v->six_r_e_2_in_axes5_z*six_r_n_m1_t_8;
+    v->six_r_n_m1_in_axes5_y = v->six_r_e_4_in_axes5_x*six_r_n_m1_t_9 +
+        v->six_r_J_5_t*six_r_n_m1_t_10;
+    v->six_r_end_p1_in_axes5_y = v->six_r_e_4_in_axes5_x*six_r_n_m1_t_10 -
+        v->six_r_J_5_t*six_r_n_m1_t_9;
+    v->six_r_n_m1_t_11 = v->six_r_e_1_in_axes5_x*v->six_r_end_p1_in_axes5_y -
+        v->six_r_e_1_in_axes5_y*v->six_r_n_m1_in_axes5_y;
+    v->six_r_n_m1_t_12 = v->six_r_e_2_in_axes5_x*v->six_r_end_p1_in_axes5_y -
+        v->six_r_e_2_in_axes5_y*v->six_r_n_m1_in_axes5_y;
+    v->six_r_n_m1_in_axes4_z = -v->six_r_J_5_t*v->six_r_n_m1_in_axes5_y -
+        v->six_r_e_4_in_axes5_x*v->six_r_end_p1_in_axes5_y;
+    v->six_r_n_m1_x = v->axis_y_six_r_axes5_x*v->six_r_n_m1_in_axes5_y -
+        v->axis_x_six_r_axes5_x*v->six_r_end_p1_in_axes5_y;
+    v->six_r_n_m1_y = v->axis_y_six_r_axes5_y*v->six_r_n_m1_in_axes5_y -
+        v->axis_x_six_r_axes5_y*v->six_r_end_p1_in_axes5_y;
+    v->six_r_n_m1_z = v->axis_y_six_r_axes5_z*v->six_r_n_m1_in_axes5_y -
+        v->axis_x_six_r_axes5_z*v->six_r_end_p1_in_axes5_y;
+    /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
+    v->six_r_end_p1_in_axes5_z = v->six_r_e_2_in_axes5_z*six_r_n_m1_t_5 +
+        v->six_r_h_4_t*six_r_n_m1_t_8;
+    v->six_r_n_m2_t = v->six_r_e_1_in_axes5_y*v->six_r_end_p1_in_axes5_z -
+        v->six_r_e_1_in_axes5_z*v->six_r_end_p1_in_axes5_y;
+    v->six_r_n_m2_t_2 = v->six_r_e_2_in_axes5_y*v->six_r_end_p1_in_axes5_z -
+        v->six_r_e_2_in_axes5_z*v->six_r_end_p1_in_axes5_y;
+    v->six_r_n_m2_in_axes4_z = v->six_r_J_5_t*v->six_r_end_p1_in_axes5_z;
+    v->six_r_n_m2_x = v->axis_z_six_r_axes5_x*v->six_r_end_p1_in_axes5_y -
+        v->axis_y_six_r_axes5_x*v->six_r_end_p1_in_axes5_z;
+    v->six_r_n_m2_y = v->axis_z_six_r_axes5_y*v->six_r_end_p1_in_axes5_y -
+        v->axis_y_six_r_axes5_y*v->six_r_end_p1_in_axes5_z;
+    v->six_r_n_m2_z = v->axis_z_six_r_axes5_z*v->six_r_end_p1_in_axes5_y -
+        v->axis_y_six_r_axes5_z*v->six_r_end_p1_in_axes5_z;
+    /* (six_r-w_1) force part of reciprocal wrench 1 */
+    const real six_r_w_1_t = v->six_r_n_m1_t_11*m->six_r_size[i];
+    const real six_r_w_1_t_2 = v->six_r_n_m2_t*m->six_r_size[i];
+    const real six_r_w_1_t_3 = v->six_r_n_m1_t_12*m->six_r_size[i];
+    const real six_r_w_1_t_4 = v->six_r_n_m2_t_2*m->six_r_size[i];
+    const real six_r_w_1_t_5 = v->six_r_n_m1_in_axes4_z*m->six_r_size[i];
+    const real six_r_w_1_t_6 = v->six_r_n_m2_in_axes4_z*m->six_r_size[i];
+    const real six_r_w_1_t_7 = v->six_r_end_p1_in_axes5_y*m->six_r_size[i];
+    v->six_r_w_1_t_8 = root(m->six_r_size_t[i] + six_r_w_1_t_7*six_r_w_1_t_7);
+    v->inv_six_r_w_1_t_8 = 1/v->six_r_w_1_t_8;
+    v->six_r_w_1_t_9 = v->inv_six_r_w_1_t_8*m->six_r_platform_joint_offset_x[i];
+    v->six_r_w_1_t_10 = v->inv_six_r_w_1_t_8*six_r_w_1_t_7;
+    v->six_r_w_1_t_11 = v->six_r_w_1_t_10*six_r_w_1_t_6;
+    const real six_r_w_1_t_12 = v->six_r_w_1_t_11*v->six_r_w_1_t_9;
+    const real six_r_w_1_t_13 = six_r_w_1_t_6 - v->six_r_w_1_t_10*v->six_r_w_1_t_11;
+    v->six_r_w_1_t_14 = v->six_r_v_1_in_axes5_y*v->six_r_w_1_t_9 -
+        v->six_r_w_1_t_10*six_r_w_1_t_2;
+    const real six_r_w_1_t_15 = v->six_r_v_1_in_axes5_y - v->six_r_w_1_t_14*v->six_r_w_1_t_9;
+    const real six_r_w_1_t_16 = six_r_w_1_t_2 + v->six_r_w_1_t_10*v->six_r_w_1_t_14;
+    const real six_r_w_1_t_17 = v->six_r_w_1_t_10*six_r_w_1_t_4;
+    v->six_r_w_1_t_18 = v->six_r_v_2_in_axes5_y*v->six_r_w_1_t_9 - six_r_w_1_t_17;
+    const real six_r_w_1_t_19 = v->six_r_v_2_in_axes5_y - v->six_r_w_1_t_18*v->six_r_w_1_t_9;
+    const real six_r_w_1_t_20 = six_r_w_1_t_4 + v->six_r_w_1_t_10*v->six_r_w_1_t_18;
+    v->six_r_w_1_t_21 = six_r_w_1_t_17 - v->six_r_v_3_in_axes5_y*v->six_r_w_1_t_9;
+    const real six_r_w_1_t_22 = v->six_r_v_3_in_axes5_y + v->six_r_w_1_t_21*v->six_r_w_1_t_9;
+    const real six_r_w_1_t_23 = six_r_w_1_t_4 - v->six_r_w_1_t_10*v->six_r_w_1_t_21;
+    v->six_r_w_1_t_24 = root(v->six_r_v_4_in_axes5_z*v->six_r_v_4_in_axes5_z +
+        six_r_w_1_t_5*six_r_w_1_t_5 + six_r_w_1_t_12*six_r_w_1_t_12 +
+        six_r_w_1_t_13*six_r_w_1_t_13);
+    v->inv_six_r_w_1_t_24 = 1/v->six_r_w_1_t_24;
+    v->six_r_w_1_t_25 = v->inv_six_r_w_1_t_24*six_r_w_1_t_12;
+    v->six_r_w_1_t_26 = v->inv_six_r_w_1_t_24*v->six_r_v_4_in_axes5_z;
+    v->six_r_w_1_t_27 = v->inv_six_r_w_1_t_24*six_r_w_1_t_5;
+    v->six_r_w_1_t_28 = v->inv_six_r_w_1_t_24*six_r_w_1_t_13;
+    v->six_r_w_1_t_29 = six_r_w_1_t*v->six_r_w_1_t_27 + six_r_w_1_t_15*v->six_r_w_1_t_25 +
+        six_r_w_1_t_16*v->six_r_w_1_t_28 - v->six_r_v_1_in_axes5_z*v->six_r_w_1_t_26;
+    const real six_r_w_1_t_30 = v->six_r_w_1_t_25*v->six_r_w_1_t_29 - six_r_w_1_t_15;
+    const real six_r_w_1_t_31 = v->six_r_v_1_in_axes5_z + v->six_r_w_1_t_26*v->six_r_w_1_t_29;
+    const real six_r_w_1_t_32 = v->six_r_w_1_t_27*v->six_r_w_1_t_29 - six_r_w_1_t;
+    const real six_r_w_1_t_33 = v->six_r_w_1_t_28*v->six_r_w_1_t_29 - six_r_w_1_t_16;
+    const real six_r_w_1_t_34 = v->six_r_w_1_t_27*six_r_w_1_t_3;
+    v->six_r_w_1_t_35 = six_r_w_1_t_19*v->six_r_w_1_t_25 + six_r_w_1_t_20*v->six_r_w_1_t_28 -
+        v->six_r_v_2_in_axes5_z*v->six_r_w_1_t_26 + six_r_w_1_t_34;
+    const real six_r_w_1_t_36 = v->six_r_w_1_t_25*v->six_r_w_1_t_35 - six_r_w_1_t_19;
+    const real six_r_w_1_t_37 = v->six_r_v_2_in_axes5_z + v->six_r_w_1_t_26*v->six_r_w_1_t_35;
+    const real six_r_w_1_t_38 = v->six_r_w_1_t_27*v->six_r_w_1_t_35 - six_r_w_1_t_3;
+    const real six_r_w_1_t_39 = v->six_r_w_1_t_28*v->six_r_w_1_t_35 - six_r_w_1_t_20;
+    v->six_r_w_1_t_40 = six_r_w_1_t_22*v->six_r_w_1_t_25 + six_r_w_1_t_23*v->six_r_w_1_t_28 -
+        v->six_r_v_3_in_axes5_z*v->six_r_w_1_t_26 + six_r_w_1_t_34;
+    const real six_r_w_1_t_41 = v->six_r_w_1_t_25*v->six_r_w_1_t_40 - six_r_w_1_t_22;
+    const real six_r_w_1_t_42 = v->six_r_v_3_in_axes5_z + v->six_r_w_1_t_26*v->six_r_w_1_t_40;
+    const real six_r_w_1_t_43 = v->six_r_w_1_t_27*v->six_r_w_1_t_40 - six_r_w_1_t_3;
+    const real six_r_w_1_t_44 = v->six_r_w_1_t_28*v->six_r_w_1_t_40 - six_r_w_1_t_23;
+    v->six_r_w_1_t_45 = root(v->six_r_v_1_in_axes5_x*v->six_r_v_1_in_axes5_x +
+        six_r_w_1_t_30*six_r_w_1_t_30 + six_r_w_1_t_31*six_r_w_1_t_31 +
+        six_r_w_1_t_32*six_r_w_1_t_32 + six_r_w_1_t_33*six_r_w_1_t_33);
+    v->inv_six_r_w_1_t_45 = 1/v->six_r_w_1_t_45;
+    v->six_r_w_1_t_46 = v->inv_six_r_w_1_t_45*v->six_r_v_1_in_axes5_x;
+    v->six_r_w_1_t_47 = v->inv_six_r_w_1_t_45*six_r_w_1_t_30;
+    v->six_r_w_1_t_48 = v->inv_six_r_w_1_t_45*six_r_w_1_t_31;
+    v->six_r_w_1_t_49 = v->inv_six_r_w_1_t_45*six_r_w_1_t_32;
+    v->six_r_w_1_t_50 = v->inv_six_r_w_1_t_45*six_r_w_1_t_33;
+    v->six_r_w_1_t_51 = v->six_r_v_2_in_axes5_x*v->six_r_w_1_t_46 +
+        six_r_w_1_t_36*v->six_r_w_1_t_47 + six_r_w_1_t_37*v->six_r_w_1_t_48 +
+        six_r_w_1_t_38*v->six_r_w_1_t_49 + six_r_w_1_t_39*v->six_r_w_1_t_50;
+    const real six_r_w_1_t_52 = v->six_r_v_2_in_axes5_x - v->six_r_w_1_t_46*v->six_r_w_1_t_51;
+    const real six_r_w_1_t_53 = six_r_w_1_t_36 - v->six_r_w_1_t_47*v->six_r_w_1_t_51;
+    const real six_r_w_1_t_54 = six_r_w_1_t_37 - v->six_r_w_1_t_48*v->six_r_w_1_t_51;
+    const real six_r_w_1_t_55 = six_r_w_1_t_38 - v->six_r_w_1_t_49*v->six_r_w_1_t_51;
+    const real six_r_w_1_t_56 = six_r_w_1_t_39 - v->six_r_w_1_t_50*v->six_r_w_1_t_51;
+    v->six_r_w_1_t_57 = v->six_r_v_3_in_axes5_x*v->six_r_w_1_t_46 +
+        six_r_w_1_t_41*v->six_r_w_1_t_47 + six_r_w_1_t_42*v->six_r_w_1_t_48 +
+        six_r_w_1_t_43*v->six_r_w_1_t_49 + six_r_w_1_t_44*v->six_r_w_1_t_50;
+    const real six_r_w_1_t_58 = v->six_r_v_3_in_axes5_x - v->six_r_w_1_t_46*v->six_r_w_1_t_57;
+    const real six_r_w_1_t_59 = six_r_w_1_t_41 - v->six_r_w_1_t_47*v->six_r_w_1_t_57;
+    const real six_r_w_1_t_60 = six_r_w_1_t_42 - v->six_r_w_1_t_48*v->six_r_w_1_t_57;
+    const real six_r_w_1_t_61 = six_r_w_1_t_43 - v->six_r_w_1_t_49*v->six_r_w_1_t_57;
+    const real six_r_w_1_t_62 = six_r_w_1_t_44 - v->six_r_w_1_t_50*v->six_r_w_1_t_57;
+    v->six_r_w_1_t_63 = root(six_r_w_1_t_52*six_r_w_1_t_52 + six_r_w_1_t_53*six_r_w_1_t_53 +
+        six_r_w_1_t_54*six_r_w_1_t_54 + six_r_w_1_t_55*six_r_w_1_t_55 +
+        six_r_w_1_t_56*six_r_w_1_t_56);
+    v->inv_six_r_w_1_t_63 = 1/v->six_r_w_1_t_63;
+    v->six_r_w_1_t_64 = v->inv_six_r_w_1_t_63*six_r_w_1_t_52;
+    v->six_r_w_1_t_65 = v->inv_six_r_w_1_t_63*six_r_w_1_t_53;
+    v->six_r_w_1_t_66 = v->inv_six_r_w_1_t_63*six_r_w_1_t_54;
+    v->six_r_w_1_t_67 = v->inv_six_r_w_1_t_63*six_r_w_1_t_55;
+    v->six_r_w_1_t_68 = v->inv_six_r_w_1_t_63*six_r_w_1_t_56;
+    v->six_r_w_1_t_69 = six_r_w_1_t_58*v->six_r_w_1_t_64 + six_r_w_1_t_59*v->six_r_w_1_t_65 +
+        six_r_w_1_t_60*v->six_r_w_1_t_66 + six_r_w_1_t_61*v->six_r_w_1_t_67 +
+        six_r_w_1_t_62*v->six_r_w_1_t_68;
+    const real six_r_w_1_t_70 = six_r_w_1_t_58 - v->six_r_w_1_t_64*v->six_r_w_1_t_69;
+    const real six_r_w_1_t_71 = six_r_w_1_t_59 - v->six_r_w_1_t_65*v->six_r_w_1_t_69;
+    const real six_r_w_1_t_72 = six_r_w_1_t_60 - v->six_r_w_1_t_66*v->six_r_w_1_t_69;
+    const real six_r_w_1_t_73 = six_r_w_1_t_61 - v->six_r_w_1_t_67*v->six_r_w_1_t_69;
+    const real six_r_w_1_t_74 = six_r_w_1_t_62 - v->six_r_w_1_t_68*v->six_r_w_1_t_69;
+    v->six_r_w_1_t_75 = root(six_r_w_1_t_70*six_r_w_1_t_70 + six_r_w_1_t_71*six_r_w_1_t_71 +
+        six_r_w_1_t_72*six_r_w_1_t_72 + six_r_w_1_t_73*six_r_w_1_t_73 +
+        six_r_w_1_t_74*six_r_w_1_t_74);
+    v->inv_six_r_w_1_t_75 = 1/v->six_r_w_1_t_75;
+    v->six_r_w_1_t_76 = v->inv_six_r_w_1_t_75*six_r_w_1_t_70;
+    v->six_r_w_1_t_77 = v->inv_six_r_w_1_t_75*six_r_w_1_t_71;
+    v->six_r_w_1_t_78 = v->inv_six_r_w_1_t_75*six_r_w_1_t_72;
+    /* (six_r-m1_w_1) moment part 1 of reciprocal wrench 1 */
+    v->six_r_m1_w_1_t = v->inv_six_r_w_1_t_75*six_r_w_1_t_73;
+    /* (six_r-m2_w_1) moment part 2 of reciprocal wrench 1 */
+    v->six_r_m2_w_1_t = v->inv_six_r_w_1_t_75*six_r_w_1_t_74;
+    /* (six_r-w_2) force part of reciprocal wrench 2 */
+    const real six_r_w_2_t = v->inv_six_r_w_1_t_63*v->inv_six_r_w_1_t_75*v->six_r_w_1_t_69;
+    v->six_r_w_2_in_axes5_x = v->inv_six_r_w_1_t_63*v->six_r_w_1_t_64 -
+        v->six_r_w_1_t_76*six_r_w_2_t;
+    v->six_r_w_2_in_axes5_y = v->six_r_w_1_t_77*six_r_w_2_t -
+        v->inv_six_r_w_1_t_63*v->six_r_w_1_t_65;
+    v->six_r_w_2_in_axes5_z = v->inv_six_r_w_1_t_63*v->six_r_w_1_t_66 -
+        v->six_r_w_1_t_78*six_r_w_2_t;
+    v->six_r_w_2_x = v->axis_x_six_r_axes5_x*v->six_r_w_2_in_axes5_x +
+        v->axis_y_six_r_axes5_x*v->six_r_w_2_in_axes5_y +
+        v->axis_z_six_r_axes5_x*v->six_r_w_2_in_axes5_z;
+    v->six_r_w_2_y = v->axis_x_six_r_axes5_y*v->six_r_w_2_in_axes5_x +
+        v->axis_y_six_r_axes5_y*v->six_r_w_2_in_axes5_y +
+        v->axis_z_six_r_axes5_y*v->six_r_w_2_in_axes5_z;
+    v->six_r_w_2_z = v->axis_x_six_r_axes5_z*v->six_r_w_2_in_axes5_x +
+        v->axis_y_six_r_axes5_z*v->six_r_w_2_in_axes5_y +
+        v->axis_z_six_r_axes5_z*v->six_r_w_2_in_axes5_z;
+    /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
+    v->six_r_m1_w_2 = m->six_r_size[i]*(v->inv_six_r_w_1_t_63*v->six_r_w_1_t_67 -
+        v->six_r_m1_w_1_t*six_r_w_2_t);
+    /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
+    v->six_r_m2_w_2 = m->six_r_size[i]*(v->inv_six_r_w_1_t_63*v->six_r_w_1_t_68 -
+        v->six_r_m2_w_1_t*six_r_w_2_t);
+    /* (six_r-o_2) moment part of reciprocal wrench 2 */
+    v->six_r_o_2_t = v->six_r_end_p1_in_axes5_y*v->six_r_m1_w_2;
+    v->six_r_o_2_in_axes5_z = v->six_r_end_p1_in_axes5_y*v->six_r_m2_w_2;
+    v->six_r_o_2_in_axes5_y = v->six_r_m1_w_2*v->six_r_n_m1_in_axes5_y -
+        v->six_r_end_p1_in_axes5_z*v->six_r_m2_w_2;
+    const real six_r_o_2_x = v->six_r_m1_w_2*v->six_r_n_m1_x +
+        v->six_r_m2_w_2*v->six_r_n_m2_x;
+    const real six_r_o_2_y = v->six_r_m1_w_2*v->six_r_n_m1_y +
+        v->six_r_m2_w_2*v->six_r_n_m2_y;
+    const real six_r_o_2_z = v->six_r_m1_w_2*v->six_r_n_m1_z +
+        v->six_r_m2_w_2*v->six_r_n_m2_z;
+    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
+    v->six_r_H_a_2_t = v->six_r_q_y*v->six_r_w_2_z - v->six_r_q_z*v->six_r_w_2_y;
+    v->six_r_H_a_2_t_2 = v->six_r_q_z*v->six_r_w_2_x - v->six_r_q_x*v->six_r_w_2_z;
+    v->six_r_H_a_2_t_3 = v->six_r_q_x*v->six_r_w_2_y - v->six_r_q_y*v->six_r_w_2_x;
+    v->six_r_H_a_2_x = six_r_o_2_x + v->six_r_H_a_2_t;
+    v->six_r_H_a_2_y = six_r_o_2_y + v->six_r_H_a_2_t_2;
+    v->six_r_H_a_2_z = six_r_o_2_z + v->six_r_H_a_2_t_3;
+}
+
+INLINE void stage_six_r_A_V_X(size_t w, size_t j, const real *s, const real *A, values_six_r *v)
+{
+    /* (six_r-S_ddot) acceleration of the connection point */
+    const real B_p_xy = s[9*w + j];
+    const real B_p_xz = s[10*w + j];
+    const real W_p_t_4 = s[11*w + j];
+    const real t_ddot_x = A[0*w + j];
+    v->six_r_S_ddot_x = t_ddot_x + B_p_xy*v->six_r_q_y + B_p_xz*v->six_r_q_z -
+        W_p_t_4*v->six_r_q_x;
+    const real B_p_yx = s[12*w + j];
+    const real B_p_yz = s[13*w + j];
+    const real W_p_t_5 = s[14*w + j];
+    const real t_ddot_y = A[1*w + j];
+    v->six_r_S_ddot_y = t_ddot_y + B_p_yx*v->six_r_q_x + B_p_yz*v->six_r_q_z -
+        W_p_t_5*v->six_r_q_y;
+    const real B_p_zx = s[15*w + j];
+    const real B_p_zy = s[16*w + j];
+    const real W_p_t_6 = s[17*w + j];
+    const real t_ddot_z = A[2*w + j];
+    v->six_r_S_ddot_z = t_ddot_z + B_p_zx*v->six_r_q_x + B_p_zy*v->six_r_q_y -
+        W_p_t_6*v->six_r_q_z;
+}
+
+INLINE void stage_six_r_A_X_q(size_t w, size_t j, const real *A, values_six_r *v)
+{
+    /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real alpha_x = A[3*w + j];
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    v->six_r_etad_1_t = v->six_r_end_p1_in_axes5_y*(alpha_x*v->axis_x_six_r_axes5_x +
+        alpha_y*v->axis_x_six_r_axes5_y + alpha_z*v->axis_x_six_r_axes5_z) -
+        v->six_r_alpha_in_axes5_y*v->six_r_n_m1_in_axes5_y;
+    /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
+    v->six_r_etad_2_t = v->six_r_alpha_in_axes5_y*v->six_r_end_p1_in_axes5_z -
+        v->six_r_end_p1_in_axes5_y*(alpha_x*v->axis_z_six_r_axes5_x +
+        alpha_y*v->axis_z_six_r_axes5_y + alpha_z*v->axis_z_six_r_axes5_z);
+}
+
+INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
+{
+    /* (six_r-S_dot) velocity of the connection point */
+    const real six_r_S_dot_in_axes5_x = v->axis_x_six_r_axes5_x*v->six_r_S_dot_x +
+        v->axis_x_six_r_axes5_y*v->six_r_S_dot_y + v->axis_x_six_r_axes5_z*v->six_r_S_dot_z;
+    const real six_r_S_dot_in_axes5_y = v->axis_y_six_r_axes5_x*v->six_r_S_dot_x +
+        v->axis_y_six_r_axes5_y*v->six_r_S_dot_y + v->axis_y_six_r_axes5_z*v->six_r_S_dot_z;
+    const real six_r_S_dot_in_axes5_z = v->axis_z_six_r_axes5_x*v->six_r_S_dot_x +
+        v->axis_z_six_r_axes5_y*v->six_r_S_dot_y + v->axis_z_six_r_axes5_z*v->six_r_S_dot_z;
+    /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
+    v->six_r_eta_1_2 = v->six_r_n_m1_in_axes5_y*v->six_r_omega_in_axes5_y -
+        v->six_r_end_p1_in_axes5_y*v->six_r_omega_in_axes5_x;
+    /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
+    v->six_r_eta_2_t = v->six_r_end_p1_in_axes5_z*v->six_r_omega_in_axes5_y -
+        v->six_r_end_p1_in_axes5_y*v->six_r_omega_in_axes5_z;
+    /* (six_r-qd_1) rate of joint 1 */
+    v->six_r_qd_1_t_3 = six_r_S_dot_in_axes5_x*v->six_r_w_1_t_46;
+    v->six_r_qd_1_t_4 = six_r_S_dot_in_axes5_y*v->six_r_w_1_t_47;
+    v->six_r_qd_1_t_5 = six_r_S_dot_in_axes5_z*v->six_r_w_1_t_48;
+    v->six_r_qd_1_t_6 = six_r_S_dot_in_axes5_x*v->six_r_w_1_t_64;
+    v->six_r_qd_1_t_7 = six_r_S_dot_in_axes5_y*v->six_r_w_1_t_65;
+    v->six_r_qd_1_t_8 = six_r_S_dot_in_axes5_z*v->six_r_w_1_t_66;
+    v->six_r_qd_1_t_9 = six_r_S_dot_in_axes5_x*v->six_r_w_1_t_76;
+    v->six_r_qd_1_t_10 = six_r_S_dot_in_axes5_y*v->six_r_w_1_t_77;
+    v->six_r_qd_1_t_11 = six_r_S_dot_in_axes5_z*v->six_r_w_1_t_78;
+    /* (six_r-qd_4) rate of joint 4 */
+    v->six_r_qd_4_t = six_r_S_dot_in_axes5_y*v->six_r_w_1_t_25;
+    v->six_r_qd_4_t_2 = six_r_S_dot_in_axes5_z*v->six_r_w_1_t_26;
+    /* (six_r-qd_5) rate of joint 5 */
+    v->six_r_qd_5_t = six_r_S_dot_in_axes5_y*v->six_r_w_1_t_9;
+    /* (six_r-nd_m1) rate of moment direction 1 */
+    v->six_r_nd_m1_t = v->six_r_n_m1_in_axes5_y*v->six_r_omega_in_axes5_z -
+        v->six_r_end_p1_in_axes5_z*v->six_r_omega_in_axes5_x;
+    /* (six_r-qd_1) */
+    const real six_r_qd_1_t_15 = v->six_r_eta_1_2*m->six_r_size[i];
+    const real six_r_qd_1_t_16 = v->six_r_eta_2_t*m->six_r_size[i];
+    v->six_r_qd_1_t_17 = v->inv_six_r_w_1_t_75*(v->six_r_m2_w_1_t*six_r_qd_1_t_16 -
+        v->six_r_m1_w_1_t*six_r_qd_1_t_15 + v->six_r_qd_1_t_10 - v->six_r_qd_1_t_11 -
+        v->six_r_qd_1_t_9);
+    v->six_r_qd_1_t_18 = -v->inv_six_r_w_1_t_63*(six_r_qd_1_t_16*v->six_r_w_1_t_68 -
+        six_r_qd_1_t_15*v->six_r_w_1_t_67 + v->six_r_qd_1_t_7 - v->six_r_qd_1_t_6 -
+        v->six_r_qd_1_t_8 - v->six_r_qd_1_t_17*v->six_r_w_1_t_69);
+    v->six_r_qd_1 = v->inv_six_r_w_1_t_45*(six_r_qd_1_t_15*v->six_r_w_1_t_49 -
+        six_r_qd_1_t_16*v->six_r_w_1_t_50 + v->six_r_qd_1_t_3 + v->six_r_qd_1_t_5 -
+        v->six_r_qd_1_t_4 + v->six_r_qd_1_t_17*v->six_r_w_1_t_57 -
+        v->six_r_qd_1_t_18*v->six_r_w_1_t_51);
+    /* (six_r-qd_4) */
+    v->six_r_qd_4_t_3 = v->inv_six_r_w_1_t_24*(six_r_qd_1_t_16*v->six_r_w_1_t_28 -
+        six_r_qd_1_t_15*v->six_r_w_1_t_27 + v->six_r_qd_4_t - v->six_r_qd_4_t_2 +
+        v->six_r_qd_1_t_17*v->six_r_w_1_t_40 - v->six_r_qd_1_t_18*v->six_r_w_1_t_35 -
+        v->six_r_qd_1*v->six_r_w_1_t_29);
+    /* (six_r-qd_5) */
+    v->six_r_qd_5_t_2 = v->inv_six_r_w_1_t_8*(six_r_qd_1_t_16*v->six_r_w_1_t_10 -
+        v->six_r_qd_5_t + v->six_r_qd_1_t_17*v->six_r_w_1_t_21 +
+        v->six_r_qd_1_t_18*v->six_r_w_1_t_18 + v->six_r_qd_1*v->six_r_w_1_t_14 -
+        v->six_r_qd_4_t_3*v->six_r_w_1_t_11);
+    /* (six_r-omega_1) angular velocity of link 1 */
+    v->six_r_omega_1_in_axes2_x_2 = v->six_r_c_2*v->six_r_qd_1;
+    v->six_r_omega_1_in_axes2_y_2 = -v->six_r_qd_1*v->six_r_s_2;
+    const real six_r_omega_1_in_axes5_x = v->six_r_e_1_in_axes5_x*v->six_r_qd_1;
+    const real six_r_omega_1_in_axes5_y = v->six_r_e_1_in_axes5_y*v->six_r_qd_1;
+    const real six_r_omega_1_in_axes5_z = v->six_r_e_1_in_axes5_z*v->six_r_qd_1;
+    /* (six_r-W_1) centripetal tensor of link 1 */
+    const real six_r_W_1_in_axes5_xy_2 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y;
+    const real six_r_W_1_in_axes5_xz_2 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z;
+    const real six_r_W_1_in_axes5_yz_2 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z;
+    /* (six_r-omega_2) angular velocity of link 2 */
+    v->six_r_omega_2_in_axes3_x_2 = v->six_r_omega_1_in_axes2_x_2*v->six_r_s_3 -
+        v->six_r_c_3*v->six_r_omega_1_in_axes2_y_2;
+    v->six_r_omega_2_in_axes3_y_2 = v->six_r_c_3*v->six_r_omega_1_in_axes2_x_2 +
+        v->six_r_omega_1_in_axes2_y_2*v->six_r_s_3;
+    const real six_r_omega_2_in_axes5_x_2 = v->six_r_e_2_in_axes5_x*v->six_r_qd_1_t_18 +
+        six_r_omega_1_in_axes5_x;
+    const real six_r_omega_2_in_axes5_y_2 = v->six_r_e_2_in_axes5_y*v->six_r_qd_1_t_18 +
+        six_r_omega_1_in_axes5_y;
+    const real six_r_omega_2_in_axes5_z_2 = v->six_r_e_2_in_axes5_z*v->six_r_qd_1_t_18 +
+        six_r_omega_1_in_axes5_z;
+    /* (six_r-W_2) centripetal tensor of link 2 */
+    v->six_r_W_2_in_axes2_yz_2 = v->six_r_omega_1_in_axes2_y_2*v->six_r_qd_1_t_18;
+    const real six_r_W_2_in_axes5_xy_2 =
+        six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_y_2;
+    const real six_r_W_2_in_axes5_xz_2 =
+        six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_z_2;
+    const real six_r_W_2_in_axes5_yz_2 =
+        six_r_omega_2_in_axes5_y_2*six_r_omega_2_in_axes5_z_2;
+    /* (six_r-omega_3) angular velocity of link 3 */
+    v->six_r_omega_3_in_axes3_z_2 = v->six_r_qd_1_t_18 - v->six_r_qd_1_t_17;
+    v->six_r_omega_3_in_axes4_x_2 = v->six_r_h_4_t*v->six_r_omega_3_in_axes3_z_2 -
+        v->six_r_e_2_in_axes5_z*v->six_r_omega_2_in_axes3_x_2;
+    v->six_r_omega_3_in_axes4_y_2 = v->six_r_e_2_in_axes5_z*v->six_r_omega_3_in_axes3_z_2 +
+        v->six_r_h_4_t*v->six_r_omega_2_in_axes3_x_2;
+    const real six_r_omega_3_t_3 = v->six_r_J_5_t*v->six_r_omega_3_in_axes4_x_2;
+    const real six_r_omega_3_t_4 = v->six_r_e_4_in_axes5_x*v->six_r_omega_3_in_axes4_x_2;
+    const real six_r_omega_3_in_axes5_x_2 =
+        v->six_r_e_4_in_axes5_x*v->six_r_omega_2_in_axes3_y_2 + six_r_omega_3_t_3;
+    const real six_r_omega_3_in_axes5_y_2 = six_r_omega_3_t_4 -
+        v->six_r_J_5_t*v->six_r_omega_2_in_axes3_y_2;
+    /* (six_r-W_3) centripetal tensor of link 3 */
+    const real six_r_W_3_in_axes5_xy_2 =
+        six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_y_2;
+    /* (six_r-omega_4) angular velocity of link 4 */
+    v->six_r_omega_4_in_axes4_z_2 = v->six_r_omega_2_in_axes3_y_2 - v->six_r_qd_4_t_3;
+    const real six_r_omega_4_in_axes5_x_2 =
+        v->six_r_e_4_in_axes5_x*v->six_r_omega_4_in_axes4_z_2 + six_r_omega_3_t_3;
+    v->six_r_omega_4_in_axes5_y_2 = six_r_omega_3_t_4 -
+        v->six_r_J_5_t*v->six_r_omega_4_in_axes4_z_2;
+    /* (six_r-W_4) centripetal tensor of link 4 */
+    v->six_r_W_4_in_axes5_xy_2 = six_r_omega_4_in_axes5_x_2*v->six_r_omega_4_in_axes5_y_2;
+    /* (six_r-omega_5) angular velocity of link 5 */
+    v->six_r_omega_5_in_axes5_z_2 = v->six_r_omega_3_in_axes4_y_2 - v->six_r_qd_5_t_2;
+    /* (six_r-W_5) centripetal tensor of link 5 */
+    v->six_r_W_5_t_4 = v->six_r_omega_4_in_axes5_y_2*v->six_r_omega_4_in_axes5_y_2;
+    v->six_r_W_5_t_5 = v->six_r_omega_5_in_axes5_z_2*v->six_r_omega_5_in_axes5_z_2;
+    v->six_r_W_5_t_6 = v->six_r_W_5_t_4 + v->six_r_W_5_t_5;
+    v->six_r_W_5_in_axes5_xz_2 = six_r_omega_4_in_axes5_x_2*v->six_r_omega_5_in_axes5_z_2;
+    /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    v->six_r_zeta_2_in_axes2_y_2 = -v->six_r_omega_1_in_axes2_x_2*v->six_r_qd_1_t_18;
+    const real six_r_zeta_2_in_axes3_x_2 = v->six_r_W_2_in_axes2_yz_2*v->six_r_s_3 -
+        v->six_r_c_3*v->six_r_zeta_2_in_axes2_y_2;
+    const real six_r_zeta_2_in_axes3_y_2 = v->six_r_W_2_in_axes2_yz_2*v->six_r_c_3 +
+        v->six_r_s_3*v->six_r_zeta_2_in_axes2_y_2;
+    const real six_r_zeta_2_t_2 = v->six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x_2;
+    const real six_r_zeta_2_in_axes5_z_2 = v->six_r_h_4_t*six_r_zeta_2_in_axes3_x_2;
+    const real six_r_zeta_2_in_axes5_x_2 = v->six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y_2 -
+        v->six_r_J_5_t*six_r_zeta_2_t_2;
+    const real six_r_zeta_2_in_axes5_y_2 = -v->six_r_J_5_t*six_r_zeta_2_in_axes3_y_2 -
+        v->six_r_e_4_in_axes5_x*six_r_zeta_2_t_2;
+    /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+    v->six_r_zeta_3_t_2 = v->six_r_omega_2_in_axes3_y_2*v->six_r_qd_1_t_17;
+    v->six_r_zeta_3_in_axes3_y = v->six_r_omega_2_in_axes3_x_2*v->six_r_qd_1_t_17;
+    /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real six_r_beta_3_in_axes3_x_2 = six_r_zeta_2_in_axes3_x_2 - v->six_r_zeta_3_t_2;
+    const real six_r_beta_3_in_axes3_y_2 = six_r_zeta_2_in_axes3_y_2 +
+        v->six_r_zeta_3_in_axes3_y;
+    const real six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*v->six_r_e_2_in_axes5_z;
+    const real six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*v->six_r_h_4_t;
+    /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+    v->six_r_zeta_4_in_axes4_x_2 = -v->six_r_omega_3_in_axes4_y_2*v->six_r_qd_4_t_3;
+    v->six_r_zeta_4_in_axes4_y = v->six_r_omega_3_in_axes4_x_2*v->six_r_qd_4_t_3;
+    /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    const real six_r_beta_4_in_axes4_x_2 = v->six_r_zeta_4_in_axes4_x_2 - six_r_beta_3_t_2;
+    const real six_r_beta_4_in_axes4_y_2 = v->six_r_zeta_4_in_axes4_y +
+        six_r_beta_3_in_axes4_y_2;
+    const real six_r_beta_4_t_3 = six_r_beta_3_in_axes3_y_2*v->six_r_e_4_in_axes5_x;
+    const real six_r_beta_4_in_axes5_x_2 = six_r_beta_4_t_3 +
+        v->six_r_J_5_t*six_r_beta_4_in_axes4_x_2;
+    const real six_r_beta_4_t_4 = v->six_r_J_5_t*six_r_beta_3_in_axes3_y_2;
+    const real six_r_beta_4_in_axes5_y_2 = six_r_beta_4_in_axes4_x_2*v->six_r_e_4_in_axes5_x -
+        six_r_beta_4_t_4;
+    /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
+    v->six_r_zeta_5_t_2 = v->six_r_omega_4_in_axes5_y_2*v->six_r_qd_5_t_2;
+    v->six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x_2*v->six_r_qd_5_t_2;
+    /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
+    const real six_r_beta_5_in_axes5_x_2 = six_r_beta_4_in_axes5_x_2 - v->six_r_zeta_5_t_2;
+    const real six_r_beta_5_in_axes5_y_2 = v->six_r_zeta_5_in_axes5_y +
+        six_r_beta_4_in_axes5_y_2;
+    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
+    v->six_r_bias_t_19 = v->six_r_omega_3_in_axes4_y_2*v->six_r_omega_3_in_axes4_y_2;
+    v->six_r_bias_t_20 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_x_2;
+    const real six_r_bias_t_21 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x;
+    const real six_r_bias_t_22 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y;
+    const real six_r_bias_t_23 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z;
+    const real six_r_bias_t_24 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_x_2;
+    const real six_r_bias_t_25 = six_r_omega_2_in_axes5_y_2*six_r_omega_2_in_axes5_y_2;
+    const real six_r_bias_t_26 = six_r_omega_2_in_axes5_z_2*six_r_omega_2_in_axes5_z_2;
+    const real six_r_bias_t_27 = v->six_r_W_4_in_axes5_xy_2 + six_r_beta_4_in_axes4_y_2;
+    v->six_r_bias_in_axes5_x_2 = six_r_W_1_in_axes5_xy_2*v->six_r_d_2_in_axes5_y +
+        six_r_W_1_in_axes5_xz_2*v->six_r_d_2_in_axes5_z -
+        v->six_r_d_2_in_axes5_x*(six_r_bias_t_22 + six_r_bias_t_23) -
+        v->six_r_d_3_in_axes5_x*(six_r_bias_t_25 + six_r_bias_t_26) +
+        v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy_2 - six_r_zeta_2_in_axes5_z_2) +
+        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz_2 + six_r_zeta_2_in_axes5_y_2) -
+        v->six_r_W_5_t_6*m->six_r_platform_joint_offset_x[i] -
+        v->six_r_bias_t_16*(six_r_W_3_in_axes5_xy_2 - six_r_beta_3_in_axes4_y_2) -
+        v->six_r_bias_t_17*(v->six_r_W_4_in_axes5_xy_2 - six_r_beta_4_in_axes4_y_2) -
+        v->six_r_d_4_in_axes5_x*(v->six_r_bias_t_19 +
+        six_r_omega_3_in_axes5_y_2*six_r_omega_3_in_axes5_y_2) -
+        v->six_r_d_5_in_axes5_x*(v->six_r_bias_t_19 + v->six_r_W_5_t_4);
+    v->six_r_bias_in_axes5_y_2 = six_r_W_1_in_axes5_xy_2*v->six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz_2*v->six_r_d_2_in_axes5_z -
+        v->six_r_d_2_in_axes5_y*(six_r_bias_t_21 + six_r_bias_t_23) -
+        v->six_r_d_3_in_axes5_y*(six_r_bias_t_24 + six_r_bias_t_26) +
+        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy_2 + six_r_zeta_2_in_axes5_z_2) +
+        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz_2 - six_r_zeta_2_in_axes5_x_2) +
+        v->six_r_bias_t_16*(v->six_r_bias_t_19 +
+        six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_x_2) +
+        v->six_r_bias_t_17*(v->six_r_bias_t_19 + v->six_r_bias_t_20) +
+        six_r_bias_t_27*v->six_r_d_5_in_axes5_x +
+        six_r_bias_t_27*m->six_r_platform_joint_offset_x[i] +
+        v->six_r_d_4_in_axes5_x*(six_r_beta_3_in_axes4_y_2 + six_r_W_3_in_axes5_xy_2);
+    v->six_r_bias_in_axes5_z_2 = six_r_W_1_in_axes5_xz_2*v->six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz_2*v->six_r_d_2_in_axes5_y -
+        v->six_r_d_2_in_axes5_z*(six_r_bias_t_21 + six_r_bias_t_22) -
+        v->six_r_d_3_in_axes5_z*(six_r_bias_t_24 + six_r_bias_t_25) +
+        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz_2 - six_r_zeta_2_in_axes5_y_2) +
+        v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz_2 + six_r_zeta_2_in_axes5_x_2) +
+        v->six_r_d_4_in_axes5_x*(six_r_beta_4_t_4 + six_r_beta_3_t_2*v->six_r_e_4_in_axes5_x +
+        v->six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_x_2) -
+        v->six_r_bias_t_16*(six_r_beta_4_t_3 +
+        v->six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_y_2 -
+        v->six_r_J_5_t*six_r_beta_3_t_2) +
+        v->six_r_d_5_in_axes5_x*(v->six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_x_2 -
+        six_r_beta_4_in_axes5_y_2) -
+        v->six_r_bias_t_17*(v->six_r_omega_3_in_axes4_y_2*v->six_r_omega_4_in_axes5_y_2 +
+        six_r_beta_4_in_axes5_x_2) +
+        m->six_r_platform_joint_offset_x[i]*(v->six_r_W_5_in_axes5_xz_2 -
+        six_r_beta_5_in_axes5_y_2);
+    /* (six_r-nd_m1) */
+    const real six_r_nd_m1_in_axes5_x_2 = -v->six_r_nd_m1_t -
+        v->six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x_2;
+    const real six_r_nd_m1_in_axes5_y_2 = v->six_r_eta_2_t -
+        v->six_r_end_p1_in_axes5_z*v->six_r_omega_4_in_axes5_y_2;
+    /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real six_r_nu_1_t_7 = v->six_r_end_p1_in_axes5_y*v->six_r_omega_4_in_axes5_y_2;
+    const real six_r_nu_1_t_8 = six_r_beta_5_in_axes5_x_2*v->six_r_end_p1_in_axes5_y -
+        six_r_beta_5_in_axes5_y_2*v->six_r_n_m1_in_axes5_y;
+    const real six_r_nu_1_t_9 = six_r_omega_4_in_axes5_x_2 - v->six_r_omega_in_axes5_x;
+    const real six_r_nu_1_t_10 = v->six_r_omega_4_in_axes5_y_2 - v->six_r_omega_in_axes5_y;
+    const real six_r_nu_1_t_11 = v->six_r_omega_5_in_axes5_z_2 - v->six_r_omega_in_axes5_z;
+    const real six_r_nu_1_t_12 = six_r_nd_m1_in_axes5_x_2*six_r_nu_1_t_9 +
+        six_r_nd_m1_in_axes5_y_2*six_r_nu_1_t_10 +
+        six_r_nu_1_t_11*(v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x_2 +
+        six_r_nu_1_t_7);
+    v->six_r_nu_1_2 = six_r_nu_1_t_8 - six_r_nu_1_t_12;
+    /* (six_r-nd_m2) rate of moment direction 2 */
+    const real six_r_nd_m2_in_axes5_y_2 = v->six_r_eta_1_2 -
+        v->six_r_n_m1_in_axes5_y*v->six_r_omega_4_in_axes5_y_2;
+    const real six_r_nd_m2_in_axes5_z_2 = v->six_r_nd_m1_t -
+        v->six_r_n_m1_in_axes5_y*v->six_r_omega_5_in_axes5_z_2;
+    /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
+    const real six_r_nu_2_t_3 = six_r_beta_5_in_axes5_y_2*v->six_r_end_p1_in_axes5_z -
+        six_r_beta_4_in_axes4_y_2*v->six_r_end_p1_in_axes5_y;
+    const real six_r_nu_2_t_4 = six_r_nd_m2_in_axes5_y_2*six_r_nu_1_t_10 +
+        six_r_nd_m2_in_axes5_z_2*six_r_nu_1_t_11 +
+        six_r_nu_1_t_9*(v->six_r_end_p1_in_axes5_z*v->six_r_omega_5_in_axes5_z_2 +
+        six_r_nu_1_t_7);
+    v->six_r_nu_2_2 = six_r_nu_2_t_3 - six_r_nu_2_t_4;
+}
+
+INLINE void stage_six_r_A_V_X_q(const prepared *m, size_t i, values_six_r *v)
+{
+    /* (six_r-S_ddot) acceleration of the connection point */
+    v->six_r_S_ddot_in_axes5_x = v->axis_x_six_r_axes5_x*v->six_r_S_ddot_x +
+        v->axis_x_six_r_axes5_y*v->six_r_S_ddot_y + v->axis_x_six_r_axes5_z*v->six_r_S_ddot_z;
+    v->six_r_S_ddot_in_axes5_y = v->axis_y_six_r_axes5_x*v->six_r_S_ddot_x +
+        v->axis_y_six_r_axes5_y*v->six_r_S_ddot_y + v->axis_y_six_r_axes5_z*v->six_r_S_ddot_z;
+    v->six_r_S_ddot_in_axes5_z = v->axis_z_six_r_axes5_x*v->six_r_S_ddot_x +
+        v->axis_z_six_r_axes5_y*v->six_r_S_ddot_y + v->axis_z_six_r_axes5_z*v->six_r_S_ddot_z;
+    /* (six_r-rel) acceleration of the connection point left to the joint accelerations */
+    const real six_r_rel_in_axes5_x = v->six_r_S_ddot_in_axes5_x - v->six_r_bias_in_axes5_x_2;
+    const real six_r_rel_in_axes5_y = v->six_r_S_ddot_in_axes5_y - v->six_r_bias_in_axes5_y_2;
+    const real six_r_rel_in_axes5_z = v->six_r_S_ddot_in_axes5_z - v->six_r_bias_in_axes5_z_2;
+    /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real six_r_etad_1 = v->six_r_nu_1_2 - v->six_r_etad_1_t;
+    /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
+    const real six_r_etad_2 = v->six_r_nu_2_2 - v->six_r_etad_2_t;
+    /* (six_r-qdd_1) acceleration of joint 1 */
+    const real six_r_qdd_1_t = six_r_etad_1*m->six_r_size[i];
+    const real six_r_qdd_1_t_2 = six_r_etad_2*m->six_r_size[i];
+    v->six_r_qdd_1_t_3 = v->inv_six_r_w_1_t_75*(v->six_r_m1_w_1_t*six_r_qdd_1_t +
+        v->six_r_m2_w_1_t*six_r_qdd_1_t_2 + six_r_rel_in_axes5_x*v->six_r_w_1_t_76 -
+        six_r_rel_in_axes5_y*v->six_r_w_1_t_77 + six_r_rel_in_axes5_z*v->six_r_w_1_t_78);
+    v->six_r_qdd_1_t_4 = v->inv_six_r_w_1_t_63*(six_r_qdd_1_t*v->six_r_w_1_t_67 +
+        six_r_qdd_1_t_2*v->six_r_w_1_t_68 + six_r_rel_in_axes5_x*v->six_r_w_1_t_64 -
+        six_r_rel_in_axes5_y*v->six_r_w_1_t_65 + six_r_rel_in_axes5_z*v->six_r_w_1_t_66 -
+        v->six_r_qdd_1_t_3*v->six_r_w_1_t_69);
+    v->six_r_qdd_1_t_5 = v->inv_six_r_w_1_t_45*(six_r_rel_in_axes5_y*v->six_r_w_1_t_47 -
+        six_r_qdd_1_t*v->six_r_w_1_t_49 - six_r_qdd_1_t_2*v->six_r_w_1_t_50 -
+        six_r_rel_in_axes5_x*v->six_r_w_1_t_46 - six_r_rel_in_axes5_z*v->six_r_w_1_t_48 +
+        v->six_r_qdd_1_t_3*v->six_r_w_1_t_57 + v->six_r_qdd_1_t_4*v->six_r_w_1_t_51);
+    /* (six_r-qdd_4) acceleration of joint 4 */
+    v->six_r_qdd_4 = v->inv_six_r_w_1_t_24*(six_r_qdd_1_t*v->six_r_w_1_t_27 +
+        six_r_qdd_1_t_2*v->six_r_w_1_t_28 - six_r_rel_in_axes5_y*v->six_r_w_1_t_25 +
+        six_r_rel_in_axes5_z*v->six_r_w_1_t_26 + v->six_r_qdd_1_t_3*v->six_r_w_1_t_40 +
+        v->six_r_qdd_1_t_4*v->six_r_w_1_t_35 - v->six_r_qdd_1_t_5*v->six_r_w_1_t_29);
+    /* (six_r-qdd_5) acceleration of joint 5 */
+    v->six_r_qdd_5 = v->inv_six_r_w_1_t_8*(six_r_qdd_1_t_2*v->six_r_w_1_t_10 +
+        six_r_rel_in_axes5_y*v->six_r_w_1_t_9 + v->six_r_qdd_1_t_3*v->six_r_w_1_t_21 -
+        v->six_r_qdd_1_t_4*v->six_r_w_1_t_18 + v->six_r_qdd_1_t_5*v->six_r_w_1_t_14 -
+        v->six_r_qdd_4*v->six_r_w_1_t_11);
+}
+
+INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
+{
+    /* (six_r-J_5) inertia tensor of link 5 about the connection point */
+    const real six_r_J_5_in_axes4_yz = m->six_r_J_5_in_spec5_xz[i]*v->six_r_e_4_in_axes5_x -
+        m->six_r_J_5_in_spec5_yz[i]*v->six_r_J_5_t;
+    /* (six_r-w_1) force part of reciprocal wrench 1 */
+    const real six_r_w_1_t_79 = v->inv_six_r_w_1_t_45*v->inv_six_r_w_1_t_63*v->six_r_w_1_t_51;
+    const real six_r_w_1_t_80 = v->inv_six_r_w_1_t_75*(v->inv_six_r_w_1_t_45*v->six_r_w_1_t_57
+        - v->six_r_w_1_t_69*six_r_w_1_t_79);
+    const real six_r_w_1_in_axes5_x = v->inv_six_r_w_1_t_45*v->six_r_w_1_t_46 -
+        v->six_r_w_1_t_64*six_r_w_1_t_79 - v->six_r_w_1_t_76*six_r_w_1_t_80;
+    const real six_r_w_1_in_axes5_y = v->six_r_w_1_t_65*six_r_w_1_t_79 -
+        v->inv_six_r_w_1_t_45*v->six_r_w_1_t_47 + v->six_r_w_1_t_77*six_r_w_1_t_80;
+    const real six_r_w_1_in_axes5_z = v->inv_six_r_w_1_t_45*v->six_r_w_1_t_48 -
+        v->six_r_w_1_t_66*six_r_w_1_t_79 - v->six_r_w_1_t_78*six_r_w_1_t_80;
+    /* (six_r-m1_w_1) moment part 1 of reciprocal wrench 1 */
+    const real six_r_m1_w_1_t_2 = m->six_r_size[i]*(v->six_r_w_1_t_67*six_r_w_1_t_79 -
+        v->inv_six_r_w_1_t_45*v->six_r_w_1_t_49 + v->six_r_m1_w_1_t*six_r_w_1_t_80);
+    /* (six_r-m2_w_1) moment part 2 of reciprocal wrench 1 */
+    const real six_r_m2_w_1_t_2 = m->six_r_size[i]*(v->six_r_w_1_t_68*six_r_w_1_t_79 -
+        v->inv_six_r_w_1_t_45*v->six_r_w_1_t_50 + v->six_r_m2_w_1_t*six_r_w_1_t_80);
+    /* (six_r-w_3) force part of reciprocal wrench 3 */
+    const real six_r_w_3_in_axes5_x = v->inv_six_r_w_1_t_75*v->six_r_w_1_t_76;
+    const real six_r_w_3_t = v->inv_six_r_w_1_t_75*v->six_r_w_1_t_77;
+    const real six_r_w_3_in_axes5_z = v->inv_six_r_w_1_t_75*v->six_r_w_1_t_78;
+    /* (six_r-m1_w_3) moment part 1 of reciprocal wrench 3 */
+    const real six_r_m1_w_3 = v->inv_six_r_w_1_t_75*v->six_r_m1_w_1_t*m->six_r_size[i];
+    /* (six_r-m2_w_3) moment part 2 of reciprocal wrench 3 */
+    const real six_r_m2_w_3 = v->inv_six_r_w_1_t_75*v->six_r_m2_w_1_t*m->six_r_size[i];
+    /* (six_r-w_4) force part of reciprocal wrench 4 */
+    const real six_r_w_4_t = v->inv_six_r_w_1_t_24*v->inv_six_r_w_1_t_45*v->six_r_w_1_t_29;
+    const real six_r_w_4_t_2 = v->inv_six_r_w_1_t_63*(v->inv_six_r_w_1_t_24*v->six_r_w_1_t_35
+        - v->six_r_w_1_t_51*six_r_w_4_t);
+    const real six_r_w_4_t_3 = v->inv_six_r_w_1_t_75*(v->six_r_w_1_t_57*six_r_w_4_t -
+        v->inv_six_r_w_1_t_24*v->six_r_w_1_t_40 + v->six_r_w_1_t_69*six_r_w_4_t_2);
+    const real six_r_w_4_in_axes5_x = v->six_r_w_1_t_46*six_r_w_4_t +
+        v->six_r_w_1_t_64*six_r_w_4_t_2 - v->six_r_w_1_t_76*six_r_w_4_t_3;
+    const real six_r_w_4_in_axes5_y = v->six_r_w_1_t_77*six_r_w_4_t_3 -
+        v->inv_six_r_w_1_t_24*v->six_r_w_1_t_25 - v->six_r_w_1_t_47*six_r_w_4_t -
+        v->six_r_w_1_t_65*six_r_w_4_t_2;
+    const real six_r_w_4_in_axes5_z = v->inv_six_r_w_1_t_24*v->six_r_w_1_t_26 +
+        v->six_r_w_1_t_48*six_r_w_4_t + v->six_r_w_1_t_66*six_r_w_4_t_2 -
+        v->six_r_w_1_t_78*six_r_w_4_t_3;
+    /* (six_r-m1_w_4) moment part 1 of reciprocal wrench 4 */
+    const real six_r_m1_w_4 = m->six_r_size[i]*(v->inv_six_r_w_1_t_24*v->six_r_w_1_t_27 +
+        v->six_r_w_1_t_49*six_r_w_4_t + v->six_r_w_1_t_67*six_r_w_4_t_2 -
+        v->six_r_m1_w_1_t*six_r_w_4_t_3);
+    /* (six_r-m2_w_4) moment part 2 of reciprocal wrench 4 */
+    const real six_r_m2_w_4 = m->six_r_size[i]*(v->inv_six_r_w_1_t_24*v->six_r_w_1_t_28 +
+        v->six_r_w_1_t_50*six_r_w_4_t + v->six_r_w_1_t_68*six_r_w_4_t_2 -
+        v->six_r_m2_w_1_t*six_r_w_4_t_3);
+    /* (six_r-w_5) force part of reciprocal wrench 5 */
+    const real six_r_w_5_t = v->inv_six_r_w_1_t_24*v->inv_six_r_w_1_t_8*v->six_r_w_1_t_11;
+    const real six_r_w_5_t_2 = v->inv_six_r_w_1_t_45*(v->inv_six_r_w_1_t_8*v->six_r_w_1_t_14 +
+        v->six_r_w_1_t_29*six_r_w_5_t);
+    const real six_r_w_5_t_3 = v->inv_six_r_w_1_t_63*(v->inv_six_r_w_1_t_8*v->six_r_w_1_t_18 +
+        v->six_r_w_1_t_35*six_r_w_5_t - v->six_r_w_1_t_51*six_r_w_5_t_2);
+    const real six_r_w_5_t_4 = v->inv_six_r_w_1_t_75*(v->inv_six_r_w_1_t_8*v->six_r_w_1_t_21 -
+        v->six_r_w_1_t_40*six_r_w_5_t + v->six_r_w_1_t_57*six_r_w_5_t_2 +
+        v->six_r_w_1_t_69*six_r_w_5_t_3);
+    const real six_r_w_5_t_5 = v->six_r_w_1_t_46*six_r_w_5_t_2 +
+        v->six_r_w_1_t_64*six_r_w_5_t_3 - v->six_r_w_1_t_76*six_r_w_5_t_4;
+    const real six_r_w_5_in_axes5_y = v->inv_six_r_w_1_t_8*v->six_r_w_1_t_9 +
+        v->six_r_w_1_t_25*six_r_w_5_t + v->six_r_w_1_t_47*six_r_w_5_t_2 +
+        v->six_r_w_1_t_65*six_r_w_5_t_3 - v->six_r_w_1_t_77*six_r_w_5_t_4;
+    const real six_r_w_5_in_axes5_z = v->six_r_w_1_t_78*six_r_w_5_t_4 -
+        v->six_r_w_1_t_26*six_r_w_5_t - v->six_r_w_1_t_48*six_r_w_5_t_2 -
+        v->six_r_w_1_t_66*six_r_w_5_t_3;
+    /* (six_r-m1_w_5) moment part 1 of reciprocal wrench 5 */
+    const real six_r_m1_w_5_t = m->six_r_size[i]*(v->six_r_w_1_t_27*six_r_w_5_t +
+        v->six_r_w_1_t_49*six_r_w_5_t_2 + v->six_r_w_1_t_67*six_r_w_5_t_3 -
+        v->six_r_m1_w_1_t*six_r_w_5_t_4);
+    /* (six_r-m2_w_5) moment part 2 of reciprocal wrench 5 */
+    const real six_r_m2_w_5_t = m->six_r_size[i]*(v->six_r_w_1_t_28*six_r_w_5_t -
+        v->inv_six_r_w_1_t_8*v->six_r_w_1_t_10 + v->six_r_w_1_t_50*six_r_w_5_t_2 +
+        v->six_r_w_1_t_68*six_r_w_5_t_3 - v->six_r_m2_w_1_t*six_r_w_5_t_4);
+    /* (six_r-o_1) moment part of reciprocal wrench 1 */
+    const real six_r_o_1_in_axes5_x = v->six_r_end_p1_in_axes5_y*six_r_m1_w_1_t_2;
+    const real six_r_o_1_t = v->six_r_end_p1_in_axes5_y*six_r_m2_w_1_t_2;
+    const real six_r_o_1_in_axes5_y = v->six_r_end_p1_in_axes5_z*six_r_m2_w_1_t_2 -
+        six_r_m1_w_1_t_2*v->six_r_n_m1_in_axes5_y;
+    /* (six_r-o_3) moment part of reciprocal wrench 3 */
+    const real six_r_o_3_t = v->six_r_end_p1_in_axes5_y*six_r_m1_w_3;
+    const real six_r_o_3_in_axes5_z = v->six_r_end_p1_in_axes5_y*six_r_m2_w_3;
+    const real six_r_o_3_in_axes5_y = six_r_m1_w_3*v->six_r_n_m1_in_axes5_y -
+        v->six_r_end_p1_in_axes5_z*six_r_m2_w_3;
+    /* (six_r-o_4) moment part of reciprocal wrench 4 */
+    const real six_r_o_4_t = v->six_r_end_p1_in_axes5_y*six_r_m1_w_4;
+    const real six_r_o_4_in_axes5_z = v->six_r_end_p1_in_axes5_y*six_r_m2_w_4;
+    const real six_r_o_4_in_axes5_y = six_r_m1_w_4*v->six_r_n_m1_in_axes5_y -
+        v->six_r_end_p1_in_axes5_z*six_r_m2_w_4;
+    /* (six_r-o_5) moment part of reciprocal wrench 5 */
+    const real six_r_o_5_in_axes5_x = v->six_r_end_p1_in_axes5_y*six_r_m1_w_5_t;
+    const real six_r_o_5_t = v->six_r_end_p1_in_axes5_y*six_r_m2_w_5_t;
+    const real six_r_o_5_in_axes5_y = v->six_r_end_p1_in_axes5_z*six_r_m2_w_5_t -
+        six_r_m1_w_5_t*v->six_r_n_m1_in_axes5_y;
+    /* (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
+    const real six_r_dalpha_alpha_5_in_axes5_xx = v->six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x
+        - v->six_r_e_2_in_axes5_x*six_r_o_3_t - v->six_r_e_4_in_axes5_x*six_r_o_4_t -
+        v->six_r_e_2_in_axes5_x*v->six_r_o_2_t;
+    const real six_r_dalpha_alpha_5_in_axes5_xy = v->six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y
+        + v->six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
+        v->six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y +
+        v->six_r_e_2_in_axes5_x*v->six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_xz = v->six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z
+        + v->six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v->six_r_e_1_in_axes5_x*six_r_o_1_t +
+        v->six_r_e_2_in_axes5_x*v->six_r_o_2_in_axes5_z;
+    const real six_r_dalpha_alpha_5_in_axes5_yx = v->six_r_J_5_t*six_r_o_4_t +
+        v->six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v->six_r_e_2_in_axes5_y*six_r_o_3_t -
+        v->six_r_e_2_in_axes5_y*v->six_r_o_2_t;
+    const real six_r_dalpha_alpha_5_in_axes5_yy = v->six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y
+        + v->six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v->six_r_J_5_t*six_r_o_4_in_axes5_y +
+        v->six_r_e_2_in_axes5_y*v->six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_yz = v->six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z
+        - v->six_r_J_5_t*six_r_o_4_in_axes5_z - v->six_r_e_1_in_axes5_y*six_r_o_1_t +
+        v->six_r_e_2_in_axes5_y*v->six_r_o_2_in_axes5_z;
+    const real six_r_dalpha_alpha_5_in_axes5_zx = six_r_o_5_in_axes5_x +
+        v->six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v->six_r_e_2_in_axes5_z*six_r_o_3_t -
+        v->six_r_e_2_in_axes5_z*v->six_r_o_2_t;
+    const real six_r_dalpha_alpha_5_in_axes5_zy = six_r_o_5_in_axes5_y +
+        v->six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
+        v->six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y +
+        v->six_r_e_2_in_axes5_z*v->six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_zz = v->six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z
+        - six_r_o_5_t - v->six_r_e_1_in_axes5_z*six_r_o_1_t +
+        v->six_r_e_2_in_axes5_z*v->six_r_o_2_in_axes5_z;
+    /* (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
+    const real six_r_d_alpha_5_in_axes5_xz = v->six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
+        v->six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z +
+        v->six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z +
+        v->six_r_e_2_in_axes5_x*v->six_r_w_2_in_axes5_z;
+    const real six_r_d_alpha_5_in_axes5_yz = v->six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
+        v->six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v->six_r_J_5_t*six_r_w_4_in_axes5_z +
+        v->six_r_e_2_in_axes5_y*v->six_r_w_2_in_axes5_z;
+    const real six_r_d_alpha_5_in_axes5_zy = six_r_w_5_in_axes5_y +
+        v->six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y - v->six_r_e_2_in_axes5_z*six_r_w_3_t +
+        v->six_r_e_2_in_axes5_z*v->six_r_w_2_in_axes5_y;
+    const real six_r_d_alpha_5_in_axes5_zz = six_r_w_5_in_axes5_z +
+        v->six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
+        v->six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z +
+        v->six_r_e_2_in_axes5_z*v->six_r_w_2_in_axes5_z;
+    /* (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning
+       about its reference point */
+    const real six_r_d_phi_5_in_axes5_xx =
+        m->six_r_h_5_in_spec5_z[i]*(v->six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
+        v->six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v->six_r_J_5_t*six_r_w_4_in_axes5_x +
+        v->six_r_e_2_in_axes5_y*v->six_r_w_2_in_axes5_x) -
+        m->six_r_h_5_in_spec5_y[i]*(v->six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
+        v->six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5 +
+        v->six_r_e_2_in_axes5_z*v->six_r_w_2_in_axes5_x);
     /* (six_r-D_3_5) inertia of joint 5 along joint 3 */
     const real six_r_D_3_5 = m->six_r_J_5_in_spec5_zz[i]*v->six_r_e_2_in_axes5_z +
-        m->six_r_J_5_in_spec5_xz[i]*six_r_e_2_in_axes5_x +
-        m->six_r_J_5_in_spec5_yz[i]*six_r_e_2_in_axes5_y;
+        m->six_r_J_5_in_spec5_xz[i]*v->six_r_e_2_in_axes5_x +
+        m->six_r_J_5_in_spec5_yz[i]*v->six_r_e_2_in_axes5_y;
     /* (six_r-D_1_5) inertia of joint 5 along joint 1 */
-    const real six_r_D_1_5 = m->six_r_J_5_in_spec5_zz[i]*six_r_e_1_in_axes5_z +
-        m->six_r_J_5_in_spec5_xz[i]*six_r_e_1_in_axes5_x +
-        m->six_r_J_5_in_spec5_yz[i]*six_r_e_1_in_axes5_y;
+    const real six_r_D_1_5 = m->six_r_J_5_in_spec5_zz[i]*v->six_r_e_1_in_axes5_z +
+        m->six_r_J_5_in_spec5_xz[i]*v->six_r_e_1_in_axes5_x +
+        m->six_r_J_5_in_spec5_yz[i]*v->six_r_e_1_in_axes5_y;
     /* (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link
        about the connection point */
-    const real six_r_Jc_4_t = m->six_r_J_5_in_spec5_xy[i]*six_r_J_5_t;
-    const real six_r_Jc_4_t_2 = m->six_r_J_5_in_spec5_xy[i]*six_r_e_4_in_axes5_x;
-    const real six_r_Jc_4_t_3 = m->six_r_J_5_in_spec5_xx[i]*six_r_J_5_t + six_r_Jc_4_t_2;
-    const real six_r_Jc_4_t_4 = m->six_r_J_5_in_spec5_yy[i]*six_r_e_4_in_axes5_x +
+    const real six_r_Jc_4_t = m->six_r_J_5_in_spec5_xy[i]*v->six_r_J_5_t;
+    const real six_r_Jc_4_t_2 = m->six_r_J_5_in_spec5_xy[i]*v->six_r_e_4_in_axes5_x;
+    const real six_r_Jc_4_t_3 = m->six_r_J_5_in_spec5_xx[i]*v->six_r_J_5_t + six_r_Jc_4_t_2;
+    const real six_r_Jc_4_t_4 = m->six_r_J_5_in_spec5_yy[i]*v->six_r_e_4_in_axes5_x +
         six_r_Jc_4_t;
     const real six_r_Jc_4_in_axes4_xx = m->six_r_J_4_in_spec4_yy[i] +
-        six_r_J_5_t*six_r_Jc_4_t_3 + six_r_Jc_4_t_4*six_r_e_4_in_axes5_x;
+        v->six_r_J_5_t*six_r_Jc_4_t_3 + six_r_Jc_4_t_4*v->six_r_e_4_in_axes5_x;
     const real six_r_Jc_4_in_axes4_xy = m->six_r_J_4_in_spec4_yz[i] +
-        m->six_r_J_5_in_spec5_xz[i]*six_r_J_5_t +
-        m->six_r_J_5_in_spec5_yz[i]*six_r_e_4_in_axes5_x;
+        m->six_r_J_5_in_spec5_xz[i]*v->six_r_J_5_t +
+        m->six_r_J_5_in_spec5_yz[i]*v->six_r_e_4_in_axes5_x;
     const real six_r_Jc_4_in_axes4_xz = m->six_r_J_4_in_spec4_xy[i] +
-        six_r_Jc_4_t_3*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_Jc_4_t_4;
+        six_r_Jc_4_t_3*v->six_r_e_4_in_axes5_x - v->six_r_J_5_t*six_r_Jc_4_t_4;
     const real six_r_Jc_4_in_axes4_yz = m->six_r_J_4_in_spec4_xz[i] + six_r_J_5_in_axes4_yz;
     const real six_r_Jc_4_in_axes4_zz = m->six_r_J_4_in_spec4_xx[i] +
-        six_r_e_4_in_axes5_x*(m->six_r_J_5_in_spec5_xx[i]*six_r_e_4_in_axes5_x - six_r_Jc_4_t)
-        - six_r_J_5_t*(six_r_Jc_4_t_2 - m->six_r_J_5_in_spec5_yy[i]*six_r_J_5_t);
+        v->six_r_e_4_in_axes5_x*(m->six_r_J_5_in_spec5_xx[i]*v->six_r_e_4_in_axes5_x -
+        six_r_Jc_4_t) - v->six_r_J_5_t*(six_r_Jc_4_t_2 -
+        m->six_r_J_5_in_spec5_yy[i]*v->six_r_J_5_t);
     const real six_r_Jc_4_in_axes3_xy = six_r_Jc_4_in_axes4_yz*v->six_r_h_4_t -
         six_r_Jc_4_in_axes4_xz*v->six_r_e_2_in_axes5_z;
     const real six_r_Jc_4_in_axes3_yz = six_r_Jc_4_in_axes4_yz*v->six_r_e_2_in_axes5_z +
         six_r_Jc_4_in_axes4_xz*v->six_r_h_4_t;
     /* (six_r-L_c_4_3) moment about joint 3 that accelerates joint 4, per unit */
     const real six_r_L_c_4_3_t = v->six_r_h_4_in_spec3_y*m->six_r_joint4_offset_x[i];
-    const real six_r_L_c_4_3_t_2 = -six_r_h_4_in_spec2_z*m->six_r_joint4_offset_x[i];
+    const real six_r_L_c_4_3_t_2 = -v->six_r_h_4_in_spec2_z*m->six_r_joint4_offset_x[i];
     const real six_r_L_c_4_3_in_axes3_x = six_r_L_c_4_3_t + six_r_Jc_4_in_axes3_xy;
     const real six_r_L_c_4_3_in_axes3_z = six_r_L_c_4_3_t_2 + six_r_Jc_4_in_axes3_yz;
     /* (six_r-L_c_4_2) moment about joint 2 that accelerates joint 4, per unit */
@@ -2800,12 +3011,12 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
         v->six_r_h_4_in_spec3_y*m->six_r_joint3_offset_x[i] -
         six_r_L_c_4_3_in_axes3_x*v->six_r_c_3;
     const real six_r_L_c_4_2_in_axes2_z = six_r_L_c_4_3_in_axes3_z -
-        v->six_r_c_3*six_r_h_4_in_spec2_z*m->six_r_joint3_offset_x[i];
+        v->six_r_c_3*v->six_r_h_4_in_spec2_z*m->six_r_joint3_offset_x[i];
     const real six_r_L_c_4_2_in_axes1_z = v->six_r_c_2*(six_r_Jc_4_in_axes4_zz*v->six_r_c_3 +
         six_r_L_c_4_3_in_axes3_x*v->six_r_s_3) - six_r_L_c_4_2_in_axes2_y*v->six_r_s_2;
     /* (six_r-hc_3) first moment of the links from 3 outwards */
     const real six_r_hc_3_in_axes3_x = -m->six_r_h_3_in_spec3_y[i] - v->six_r_h_4_in_spec3_y;
-    const real six_r_hc_3_in_axes3_z = m->six_r_h_3_in_spec3_z[i] + six_r_h_4_in_spec2_z;
+    const real six_r_hc_3_in_axes3_z = m->six_r_h_3_in_spec3_z[i] + v->six_r_h_4_in_spec2_z;
     const real six_r_hc_3_in_axes2_x = v->six_r_c_3*m->six_r_hc_3_in_axes3_y[i] +
         six_r_hc_3_in_axes3_x*v->six_r_s_3;
     /* (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
@@ -2868,1320 +3079,613 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
     /* (six_r-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
        about the connection point */
     const real six_r_Jc_1_in_axes1_zz = m->six_r_J_1_in_spec1_xx[i] + six_r_Jc_2_in_axes1_zz;
+    /* (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_5_in_axes5_x = six_r_D_1_5*six_r_o_1_in_axes5_x +
+        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_x - six_r_D_3_5*six_r_o_3_t -
+        six_r_J_5_in_axes4_yz*six_r_o_4_t - six_r_D_3_5*v->six_r_o_2_t;
+    const real six_r_dalpha_Gamma_5_in_axes5_y = six_r_D_1_5*six_r_o_1_in_axes5_y +
+        six_r_D_3_5*six_r_o_3_in_axes5_y + six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
+        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_y +
+        six_r_D_3_5*v->six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_Gamma_5_in_axes5_z = six_r_D_3_5*six_r_o_3_in_axes5_z +
+        six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z - six_r_D_1_5*six_r_o_1_t -
+        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_t + six_r_D_3_5*v->six_r_o_2_in_axes5_z;
+    /* (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_5_t = v->inv_six_r_w_1_t_8*m->six_r_J_5_in_spec5_zz[i];
+    const real six_r_d_Gamma_5_t_2 = v->inv_six_r_w_1_t_24*(six_r_J_5_in_axes4_yz -
+        six_r_d_Gamma_5_t*v->six_r_w_1_t_11);
+    const real six_r_d_Gamma_5_t_3 = v->inv_six_r_w_1_t_45*(six_r_D_1_5 -
+        six_r_d_Gamma_5_t*v->six_r_w_1_t_14 + six_r_d_Gamma_5_t_2*v->six_r_w_1_t_29);
+    const real six_r_d_Gamma_5_t_4 = v->inv_six_r_w_1_t_63*(six_r_D_3_5 -
+        six_r_d_Gamma_5_t*v->six_r_w_1_t_18 + six_r_d_Gamma_5_t_2*v->six_r_w_1_t_35 -
+        six_r_d_Gamma_5_t_3*v->six_r_w_1_t_51);
+    const real six_r_d_Gamma_5_t_5 = v->inv_six_r_w_1_t_75*(six_r_D_3_5 +
+        six_r_d_Gamma_5_t*v->six_r_w_1_t_21 + six_r_d_Gamma_5_t_2*v->six_r_w_1_t_40 -
+        six_r_d_Gamma_5_t_3*v->six_r_w_1_t_57 - six_r_d_Gamma_5_t_4*v->six_r_w_1_t_69);
+    const real six_r_d_Gamma_5_in_axes5_z = six_r_d_Gamma_5_t_2*v->six_r_w_1_t_26 +
+        six_r_d_Gamma_5_t_3*v->six_r_w_1_t_48 + six_r_d_Gamma_5_t_4*v->six_r_w_1_t_66 +
+        six_r_d_Gamma_5_t_5*v->six_r_w_1_t_78;
+    const real six_r_d_Gamma_5_in_axes5_x = six_r_d_Gamma_5_t_3*v->six_r_w_1_t_46 -
+        m->six_r_h_5_in_spec5_y[i] + six_r_d_Gamma_5_t_4*v->six_r_w_1_t_64 +
+        six_r_d_Gamma_5_t_5*v->six_r_w_1_t_76;
+    const real six_r_d_Gamma_5_in_axes5_y = m->six_r_h_5_in_spec5_x[i] +
+        six_r_d_Gamma_5_t*v->six_r_w_1_t_9 - six_r_d_Gamma_5_t_2*v->six_r_w_1_t_25 -
+        six_r_d_Gamma_5_t_3*v->six_r_w_1_t_47 - six_r_d_Gamma_5_t_4*v->six_r_w_1_t_65 -
+        six_r_d_Gamma_5_t_5*v->six_r_w_1_t_77;
+    /* (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_4_in_axes5_x = six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_x +
+        six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x - six_r_Jc_4_in_axes4_zz*six_r_o_4_t -
+        six_r_L_c_4_3_in_axes3_z*six_r_o_3_t - six_r_L_c_4_2_in_axes2_z*v->six_r_o_2_t;
+    const real six_r_dalpha_Gamma_4_in_axes5_y = six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_y +
+        six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
+        six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
+        six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y +
+        six_r_L_c_4_2_in_axes2_z*v->six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_Gamma_4_in_axes5_z = six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z +
+        six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - six_r_J_5_in_axes4_yz*six_r_o_5_t -
+        six_r_L_c_4_2_in_axes1_z*six_r_o_1_t +
+        six_r_L_c_4_2_in_axes2_z*v->six_r_o_2_in_axes5_z;
+    /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_4_t_2 = v->inv_six_r_w_1_t_8*six_r_J_5_in_axes4_yz;
+    const real six_r_d_Gamma_4_t_3 = v->inv_six_r_w_1_t_24*(six_r_Jc_4_in_axes4_zz -
+        six_r_d_Gamma_4_t_2*v->six_r_w_1_t_11);
+    const real six_r_d_Gamma_4_t_4 = v->inv_six_r_w_1_t_45*(six_r_L_c_4_2_in_axes1_z -
+        six_r_d_Gamma_4_t_2*v->six_r_w_1_t_14 + six_r_d_Gamma_4_t_3*v->six_r_w_1_t_29);
+    const real six_r_d_Gamma_4_t_5 = v->inv_six_r_w_1_t_63*(six_r_L_c_4_2_in_axes2_z -
+        six_r_d_Gamma_4_t_2*v->six_r_w_1_t_18 + six_r_d_Gamma_4_t_3*v->six_r_w_1_t_35 -
+        six_r_d_Gamma_4_t_4*v->six_r_w_1_t_51);
+    const real six_r_d_Gamma_4_t_6 = v->inv_six_r_w_1_t_75*(six_r_L_c_4_3_in_axes3_z +
+        six_r_d_Gamma_4_t_2*v->six_r_w_1_t_21 + six_r_d_Gamma_4_t_3*v->six_r_w_1_t_40 -
+        six_r_d_Gamma_4_t_4*v->six_r_w_1_t_57 - six_r_d_Gamma_4_t_5*v->six_r_w_1_t_69);
+    const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_4*v->six_r_w_1_t_46 -
+        v->six_r_J_5_t*m->six_r_h_5_in_spec5_z[i] + six_r_d_Gamma_4_t_5*v->six_r_w_1_t_64 +
+        six_r_d_Gamma_4_t_6*v->six_r_w_1_t_76;
+    const real six_r_d_Gamma_4_in_axes5_y = six_r_d_Gamma_4_t_2*v->six_r_w_1_t_9 -
+        v->six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
+        six_r_d_Gamma_4_t_3*v->six_r_w_1_t_25 - six_r_d_Gamma_4_t_4*v->six_r_w_1_t_47 -
+        six_r_d_Gamma_4_t_5*v->six_r_w_1_t_65 - six_r_d_Gamma_4_t_6*v->six_r_w_1_t_77;
+    const real six_r_d_Gamma_4_in_axes5_z = v->six_r_d_Gamma_4_t +
+        six_r_d_Gamma_4_t_3*v->six_r_w_1_t_26 + six_r_d_Gamma_4_t_4*v->six_r_w_1_t_48 +
+        six_r_d_Gamma_4_t_5*v->six_r_w_1_t_66 + six_r_d_Gamma_4_t_6*v->six_r_w_1_t_78;
+    /* (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_3_t = six_r_D_3_5*six_r_o_5_in_axes5_x;
+    const real six_r_dalpha_Gamma_3_t_2 = six_r_D_3_5*six_r_o_5_in_axes5_y;
+    const real six_r_dalpha_Gamma_3_t_3 = six_r_D_3_5*six_r_o_5_t;
+    const real six_r_dalpha_Gamma_3_in_axes5_x = six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_x
+        - six_r_Jc_3_in_axes3_zz*six_r_o_3_t - six_r_L_c_4_3_in_axes3_z*six_r_o_4_t +
+        six_r_dalpha_Gamma_3_t - six_r_L_c_3_2_in_axes2_z*v->six_r_o_2_t;
+    const real six_r_dalpha_Gamma_3_in_axes5_y = six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y +
+        six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
+        six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y + six_r_dalpha_Gamma_3_t_2 +
+        six_r_L_c_3_2_in_axes2_z*v->six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_Gamma_3_in_axes5_z = six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z +
+        six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_L_c_3_2_in_axes1_z*six_r_o_1_t +
+        six_r_L_c_3_2_in_axes2_z*v->six_r_o_2_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
     /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
-    const real six_r_d_Gamma_3_t = six_r_e_2_in_axes5_y*m->six_r_h_5_in_spec5_z[i] -
+    const real six_r_d_Gamma_3_t = v->six_r_e_2_in_axes5_y*m->six_r_h_5_in_spec5_z[i] -
         v->six_r_e_2_in_axes5_z*m->six_r_h_5_in_spec5_y[i];
-    const real six_r_d_Gamma_3_t_2 = six_r_e_2_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
+    const real six_r_d_Gamma_3_t_2 = v->six_r_e_2_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
         v->six_r_e_2_in_axes5_z*m->six_r_h_5_in_spec5_x[i];
-    const real six_r_d_Gamma_3_t_3 = six_r_e_2_in_axes5_x*m->six_r_h_5_in_spec5_y[i] -
-        six_r_e_2_in_axes5_y*m->six_r_h_5_in_spec5_x[i];
-    v->six_r_e_4_in_axes5_x = six_r_e_4_in_axes5_x;
-    v->six_r_J_5_t = six_r_J_5_t;
-    v->six_r_J_5_in_axes4_yz = six_r_J_5_in_axes4_yz;
-    v->six_r_e_2_in_axes5_y = six_r_e_2_in_axes5_y;
-    v->six_r_e_1_in_axes5_z = six_r_e_1_in_axes5_z;
-    v->six_r_e_1_in_axes5_x = six_r_e_1_in_axes5_x;
-    v->six_r_e_1_in_axes5_y = six_r_e_1_in_axes5_y;
-    v->six_r_v_1_in_axes5_x = six_r_v_1_in_axes5_x;
-    v->six_r_v_1_in_axes5_y = six_r_v_1_in_axes5_y;
-    v->six_r_v_1_in_axes5_z = six_r_v_1_in_axes5_z;
-    v->six_r_e_2_in_axes5_x = six_r_e_2_in_axes5_x;
-    v->six_r_v_2_in_axes5_x = six_r_v_2_in_axes5_x;
-    v->six_r_v_2_in_axes5_y = six_r_v_2_in_axes5_y;
-    v->six_r_v_2_in_axes5_z = six_r_v_2_in_axes5_z;
-    v->six_r_v_3_in_axes5_x = six_r_v_3_in_axes5_x;
-    v->six_r_v_3_in_axes5_y = six_r_v_3_in_axes5_y;
-    v->six_r_v_3_in_axes5_z = six_r_v_3_in_axes5_z;
-    v->six_r_v_4_in_axes5_z = six_r_v_4_in_axes5_z;
-    v->six_r_D_3_5 = six_r_D_3_5;
-    v->six_r_D_1_5 = six_r_D_1_5;
-    v->six_r_Jc_4_in_axes4_zz = six_r_Jc_4_in_axes4_zz;
-    v->six_r_L_c_4_3_in_axes3_z = six_r_L_c_4_3_in_axes3_z;
-    v->six_r_L_c_4_2_in_axes2_z = six_r_L_c_4_2_in_axes2_z;
-    v->six_r_L_c_4_2_in_axes1_z = six_r_L_c_4_2_in_axes1_z;
-    v->six_r_Jc_3_in_axes3_zz = six_r_Jc_3_in_axes3_zz;
-    v->six_r_L_c_3_2_in_axes2_z = six_r_L_c_3_2_in_axes2_z;
-    v->six_r_L_c_3_2_in_axes1_z = six_r_L_c_3_2_in_axes1_z;
-    v->six_r_Jc_2_in_axes2_zz = six_r_Jc_2_in_axes2_zz;
-    v->six_r_Jc_2_in_axes1_yz = six_r_Jc_2_in_axes1_yz;
-    v->six_r_Jc_1_in_axes1_zz = six_r_Jc_1_in_axes1_zz;
-    v->six_r_d_Gamma_3_t = six_r_d_Gamma_3_t;
-    v->six_r_d_Gamma_3_t_2 = six_r_d_Gamma_3_t_2;
-    v->six_r_d_Gamma_3_t_3 = six_r_d_Gamma_3_t_3;
+    const real six_r_d_Gamma_3_t_3 = v->six_r_e_2_in_axes5_x*m->six_r_h_5_in_spec5_y[i] -
+        v->six_r_e_2_in_axes5_y*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_d_Gamma_3_t_4 = v->inv_six_r_w_1_t_8*six_r_D_3_5;
+    const real six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*v->six_r_w_1_t_11;
+    const real six_r_d_Gamma_3_t_6 = v->inv_six_r_w_1_t_24*(six_r_L_c_4_3_in_axes3_z -
+        six_r_d_Gamma_3_t_5);
+    const real six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*v->six_r_w_1_t_14;
+    const real six_r_d_Gamma_3_t_8 = v->inv_six_r_w_1_t_45*(six_r_L_c_3_2_in_axes1_z -
+        six_r_d_Gamma_3_t_7 + six_r_d_Gamma_3_t_6*v->six_r_w_1_t_29);
+    const real six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*v->six_r_w_1_t_18;
+    const real six_r_d_Gamma_3_t_10 = v->inv_six_r_w_1_t_63*(six_r_L_c_3_2_in_axes2_z -
+        six_r_d_Gamma_3_t_9 + six_r_d_Gamma_3_t_6*v->six_r_w_1_t_35 -
+        six_r_d_Gamma_3_t_8*v->six_r_w_1_t_51);
+    const real six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*v->six_r_w_1_t_21;
+    const real six_r_d_Gamma_3_t_12 = v->inv_six_r_w_1_t_75*(six_r_Jc_3_in_axes3_zz +
+        six_r_d_Gamma_3_t_11 + six_r_d_Gamma_3_t_6*v->six_r_w_1_t_40 -
+        six_r_d_Gamma_3_t_8*v->six_r_w_1_t_57 - six_r_d_Gamma_3_t_10*v->six_r_w_1_t_69);
+    const real six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*v->six_r_w_1_t_9;
+    const real six_r_d_Gamma_3_in_axes5_x = six_r_d_Gamma_3_t +
+        six_r_d_Gamma_3_t_8*v->six_r_w_1_t_46 + six_r_d_Gamma_3_t_10*v->six_r_w_1_t_64 +
+        six_r_d_Gamma_3_t_12*v->six_r_w_1_t_76;
+    const real six_r_d_Gamma_3_in_axes5_y = six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 -
+        six_r_d_Gamma_3_t_6*v->six_r_w_1_t_25 - six_r_d_Gamma_3_t_8*v->six_r_w_1_t_47 -
+        six_r_d_Gamma_3_t_10*v->six_r_w_1_t_65 - six_r_d_Gamma_3_t_12*v->six_r_w_1_t_77;
+    const real six_r_d_Gamma_3_in_axes5_z = six_r_d_Gamma_3_t_3 +
+        six_r_d_Gamma_3_t_6*v->six_r_w_1_t_26 + six_r_d_Gamma_3_t_8*v->six_r_w_1_t_48 +
+        six_r_d_Gamma_3_t_10*v->six_r_w_1_t_66 + six_r_d_Gamma_3_t_12*v->six_r_w_1_t_78;
+    /* (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_2_in_axes5_x = six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x -
+        six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - six_r_L_c_4_2_in_axes2_z*six_r_o_4_t +
+        six_r_dalpha_Gamma_3_t - six_r_Jc_2_in_axes2_zz*v->six_r_o_2_t;
+    const real six_r_dalpha_Gamma_2_in_axes5_y = six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y +
+        six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
+        six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y + six_r_dalpha_Gamma_3_t_2 +
+        six_r_Jc_2_in_axes2_zz*v->six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_Gamma_2_in_axes5_z = six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z
+        + six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_Jc_2_in_axes1_yz*six_r_o_1_t +
+        six_r_Jc_2_in_axes2_zz*v->six_r_o_2_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
+    /* (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_2_t = v->inv_six_r_w_1_t_24*(six_r_L_c_4_2_in_axes2_z -
+        six_r_d_Gamma_3_t_5);
+    const real six_r_d_Gamma_2_t_2 = v->inv_six_r_w_1_t_45*(six_r_Jc_2_in_axes1_yz -
+        six_r_d_Gamma_3_t_7 + six_r_d_Gamma_2_t*v->six_r_w_1_t_29);
+    const real six_r_d_Gamma_2_t_3 = v->inv_six_r_w_1_t_63*(six_r_Jc_2_in_axes2_zz -
+        six_r_d_Gamma_3_t_9 + six_r_d_Gamma_2_t*v->six_r_w_1_t_35 -
+        six_r_d_Gamma_2_t_2*v->six_r_w_1_t_51);
+    const real six_r_d_Gamma_2_t_4 = v->inv_six_r_w_1_t_75*(six_r_L_c_3_2_in_axes2_z +
+        six_r_d_Gamma_3_t_11 + six_r_d_Gamma_2_t*v->six_r_w_1_t_40 -
+        six_r_d_Gamma_2_t_2*v->six_r_w_1_t_57 - six_r_d_Gamma_2_t_3*v->six_r_w_1_t_69);
+    const real six_r_d_Gamma_2_in_axes5_x = six_r_d_Gamma_3_t +
+        six_r_d_Gamma_2_t_2*v->six_r_w_1_t_46 + six_r_d_Gamma_2_t_3*v->six_r_w_1_t_64 +
+        six_r_d_Gamma_2_t_4*v->six_r_w_1_t_76;
+    const real six_r_d_Gamma_2_in_axes5_y = six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 -
+        six_r_d_Gamma_2_t*v->six_r_w_1_t_25 - six_r_d_Gamma_2_t_2*v->six_r_w_1_t_47 -
+        six_r_d_Gamma_2_t_3*v->six_r_w_1_t_65 - six_r_d_Gamma_2_t_4*v->six_r_w_1_t_77;
+    const real six_r_d_Gamma_2_in_axes5_z = six_r_d_Gamma_3_t_3 +
+        six_r_d_Gamma_2_t*v->six_r_w_1_t_26 + six_r_d_Gamma_2_t_2*v->six_r_w_1_t_48 +
+        six_r_d_Gamma_2_t_3*v->six_r_w_1_t_66 + six_r_d_Gamma_2_t_4*v->six_r_w_1_t_78;
+    /* (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_1_in_axes5_x = six_r_D_1_5*six_r_o_5_in_axes5_x +
+        six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - six_r_L_c_3_2_in_axes1_z*six_r_o_3_t -
+        six_r_L_c_4_2_in_axes1_z*six_r_o_4_t - six_r_Jc_2_in_axes1_yz*v->six_r_o_2_t;
+    const real six_r_dalpha_Gamma_1_in_axes5_y = six_r_D_1_5*six_r_o_5_in_axes5_y +
+        six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
+        six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
+        six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y +
+        six_r_Jc_2_in_axes1_yz*v->six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_Gamma_1_in_axes5_z = six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z
+        + six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - six_r_D_1_5*six_r_o_5_t -
+        six_r_Jc_1_in_axes1_zz*six_r_o_1_t + six_r_Jc_2_in_axes1_yz*v->six_r_o_2_in_axes5_z;
+    /* (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_1_t = v->inv_six_r_w_1_t_8*six_r_D_1_5;
+    const real six_r_d_Gamma_1_t_2 = v->inv_six_r_w_1_t_24*(six_r_L_c_4_2_in_axes1_z -
+        six_r_d_Gamma_1_t*v->six_r_w_1_t_11);
+    const real six_r_d_Gamma_1_t_3 = v->inv_six_r_w_1_t_45*(six_r_Jc_1_in_axes1_zz -
+        six_r_d_Gamma_1_t*v->six_r_w_1_t_14 + six_r_d_Gamma_1_t_2*v->six_r_w_1_t_29);
+    const real six_r_d_Gamma_1_t_4 = v->inv_six_r_w_1_t_63*(six_r_Jc_2_in_axes1_yz -
+        six_r_d_Gamma_1_t*v->six_r_w_1_t_18 + six_r_d_Gamma_1_t_2*v->six_r_w_1_t_35 -
+        six_r_d_Gamma_1_t_3*v->six_r_w_1_t_51);
+    const real six_r_d_Gamma_1_t_5 = v->inv_six_r_w_1_t_75*(six_r_L_c_3_2_in_axes1_z +
+        six_r_d_Gamma_1_t*v->six_r_w_1_t_21 + six_r_d_Gamma_1_t_2*v->six_r_w_1_t_40 -
+        six_r_d_Gamma_1_t_3*v->six_r_w_1_t_57 - six_r_d_Gamma_1_t_4*v->six_r_w_1_t_69);
+    const real six_r_d_Gamma_1_in_axes5_x = v->six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_z[i]
+        - v->six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_y[i] +
+        six_r_d_Gamma_1_t_3*v->six_r_w_1_t_46 + six_r_d_Gamma_1_t_4*v->six_r_w_1_t_64 +
+        six_r_d_Gamma_1_t_5*v->six_r_w_1_t_76;
+    const real six_r_d_Gamma_1_in_axes5_y = v->six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_x[i]
+        - v->six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_z[i] +
+        six_r_d_Gamma_1_t*v->six_r_w_1_t_9 - six_r_d_Gamma_1_t_2*v->six_r_w_1_t_25 -
+        six_r_d_Gamma_1_t_3*v->six_r_w_1_t_47 - six_r_d_Gamma_1_t_4*v->six_r_w_1_t_65 -
+        six_r_d_Gamma_1_t_5*v->six_r_w_1_t_77;
+    const real six_r_d_Gamma_1_in_axes5_z = v->six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_y[i]
+        - v->six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_x[i] +
+        six_r_d_Gamma_1_t_2*v->six_r_w_1_t_26 + six_r_d_Gamma_1_t_3*v->six_r_w_1_t_48 +
+        six_r_d_Gamma_1_t_4*v->six_r_w_1_t_66 + six_r_d_Gamma_1_t_5*v->six_r_w_1_t_78;
+    /* (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real six_r_dalpha_G_m1_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*v->six_r_m1_w_2
+        + six_r_dalpha_Gamma_3_in_axes5_x*six_r_m1_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_m1_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_m1_w_5_t;
+    const real six_r_dalpha_G_m1_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*v->six_r_m1_w_2
+        + six_r_dalpha_Gamma_3_in_axes5_y*six_r_m1_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_m1_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_m1_w_5_t;
+    const real six_r_dalpha_G_m1_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*v->six_r_m1_w_2
+        + six_r_dalpha_Gamma_3_in_axes5_z*six_r_m1_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_m1_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_m1_w_5_t;
+    const real six_r_dalpha_G_m1_y = v->axis_x_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_x +
+        v->axis_y_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_y +
+        v->axis_z_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_z;
+    const real six_r_dalpha_G_m1_z = v->axis_x_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_x +
+        v->axis_y_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_y +
+        v->axis_z_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_z;
+    /* (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real six_r_d_G_m1_in_axes5_x = six_r_d_Gamma_3_in_axes5_x*six_r_m1_w_3 +
+        six_r_d_Gamma_4_in_axes5_x*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_x*six_r_m1_w_5_t +
+        six_r_d_Gamma_2_in_axes5_x*v->six_r_m1_w_2;
+    const real six_r_d_G_m1_in_axes5_y = six_r_d_Gamma_3_in_axes5_y*six_r_m1_w_3 +
+        six_r_d_Gamma_4_in_axes5_y*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_y*six_r_m1_w_5_t +
+        six_r_d_Gamma_2_in_axes5_y*v->six_r_m1_w_2;
+    const real six_r_d_G_m1_in_axes5_z = six_r_d_Gamma_3_in_axes5_z*six_r_m1_w_3 +
+        six_r_d_Gamma_4_in_axes5_z*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_z*six_r_m1_w_5_t +
+        six_r_d_Gamma_2_in_axes5_z*v->six_r_m1_w_2;
+    const real six_r_d_G_m1_x = v->axis_x_six_r_axes5_x*six_r_d_G_m1_in_axes5_x +
+        v->axis_y_six_r_axes5_x*six_r_d_G_m1_in_axes5_y +
+        v->axis_z_six_r_axes5_x*six_r_d_G_m1_in_axes5_z;
+    const real six_r_d_G_m1_y = v->axis_x_six_r_axes5_y*six_r_d_G_m1_in_axes5_x +
+        v->axis_y_six_r_axes5_y*six_r_d_G_m1_in_axes5_y +
+        v->axis_z_six_r_axes5_y*six_r_d_G_m1_in_axes5_z;
+    const real six_r_d_G_m1_z = v->axis_x_six_r_axes5_z*six_r_d_G_m1_in_axes5_x +
+        v->axis_y_six_r_axes5_z*six_r_d_G_m1_in_axes5_y +
+        v->axis_z_six_r_axes5_z*six_r_d_G_m1_in_axes5_z;
+    /* (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real six_r_dalpha_G_m2_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*v->six_r_m2_w_2
+        + six_r_dalpha_Gamma_3_in_axes5_x*six_r_m2_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_m2_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
+    const real six_r_dalpha_G_m2_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*v->six_r_m2_w_2
+        + six_r_dalpha_Gamma_3_in_axes5_y*six_r_m2_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_m2_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
+    const real six_r_dalpha_G_m2_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*v->six_r_m2_w_2
+        + six_r_dalpha_Gamma_3_in_axes5_z*six_r_m2_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_m2_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
+    const real six_r_dalpha_G_m2_y = v->axis_x_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_x +
+        v->axis_y_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_y +
+        v->axis_z_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_z;
+    const real six_r_dalpha_G_m2_z = v->axis_x_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_x +
+        v->axis_y_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_y +
+        v->axis_z_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_z;
+    /* (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 +
+        six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t +
+        six_r_d_Gamma_2_in_axes5_x*v->six_r_m2_w_2;
+    const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 +
+        six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t +
+        six_r_d_Gamma_2_in_axes5_y*v->six_r_m2_w_2;
+    const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 +
+        six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t +
+        six_r_d_Gamma_2_in_axes5_z*v->six_r_m2_w_2;
+    const real six_r_d_G_m2_x = v->axis_x_six_r_axes5_x*six_r_d_G_m2_in_axes5_x +
+        v->axis_y_six_r_axes5_x*six_r_d_G_m2_in_axes5_y +
+        v->axis_z_six_r_axes5_x*six_r_d_G_m2_in_axes5_z;
+    const real six_r_d_G_m2_y = v->axis_x_six_r_axes5_y*six_r_d_G_m2_in_axes5_x +
+        v->axis_y_six_r_axes5_y*six_r_d_G_m2_in_axes5_y +
+        v->axis_z_six_r_axes5_y*six_r_d_G_m2_in_axes5_z;
+    const real six_r_d_G_m2_z = v->axis_x_six_r_axes5_z*six_r_d_G_m2_in_axes5_x +
+        v->axis_y_six_r_axes5_z*six_r_d_G_m2_in_axes5_y +
+        v->axis_z_six_r_axes5_z*six_r_d_G_m2_in_axes5_z;
+    /* (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real six_r_d_G_m_xx = six_r_d_G_m1_x*v->six_r_n_m1_x +
+        six_r_d_G_m2_x*v->six_r_n_m2_x;
+    const real six_r_d_G_m_xy = six_r_d_G_m1_y*v->six_r_n_m1_x +
+        six_r_d_G_m2_y*v->six_r_n_m2_x;
+    const real six_r_d_G_m_xz = six_r_d_G_m1_z*v->six_r_n_m1_x +
+        six_r_d_G_m2_z*v->six_r_n_m2_x;
+    const real six_r_d_G_m_yx = six_r_d_G_m1_x*v->six_r_n_m1_y +
+        six_r_d_G_m2_x*v->six_r_n_m2_y;
+    /* (six_r-dalpha_c) coefficient of the acceleration in: leg force on the platform without
+       actuation and without the mass at the connection point */
+    const real six_r_dalpha_c_in_axes5_xx =
+        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_z[i] +
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
+        six_r_dalpha_Gamma_2_in_axes5_x*v->six_r_w_2_in_axes5_x -
+        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x;
+    const real six_r_dalpha_c_in_axes5_xy =
+        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_z[i] +
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_t_5 -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
+        six_r_dalpha_Gamma_2_in_axes5_y*v->six_r_w_2_in_axes5_x -
+        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x;
+    const real six_r_dalpha_c_in_axes5_xz =
+        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] +
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_t_5 -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
+        six_r_dalpha_Gamma_2_in_axes5_z*v->six_r_w_2_in_axes5_x -
+        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x;
+    const real six_r_dalpha_c_in_axes5_yx =
+        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] +
+        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_t -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_y -
+        six_r_dalpha_Gamma_2_in_axes5_x*v->six_r_w_2_in_axes5_y -
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_y -
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_y;
+    const real six_r_dalpha_c_in_axes5_yy =
+        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i] +
+        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_t -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
+        six_r_dalpha_Gamma_2_in_axes5_y*v->six_r_w_2_in_axes5_y -
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y;
+    const real six_r_dalpha_c_in_axes5_yz =
+        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i] +
+        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_t -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
+        six_r_dalpha_Gamma_2_in_axes5_z*v->six_r_w_2_in_axes5_y -
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y;
+    const real six_r_dalpha_c_in_axes5_zx =
+        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_z -
+        six_r_dalpha_Gamma_2_in_axes5_x*v->six_r_w_2_in_axes5_z -
+        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_z -
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_z -
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_z;
+    const real six_r_dalpha_c_in_axes5_zy =
+        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_z -
+        six_r_dalpha_Gamma_2_in_axes5_y*v->six_r_w_2_in_axes5_z -
+        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_z -
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_z -
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_z;
+    const real six_r_dalpha_c_in_axes5_zz =
+        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z -
+        six_r_dalpha_Gamma_2_in_axes5_z*v->six_r_w_2_in_axes5_z -
+        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z -
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z -
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z;
+    /* (six_r-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real six_r_d_c_in_axes5_xx = six_r_d_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
+        six_r_d_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
+        six_r_d_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
+        six_r_d_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x -
+        six_r_d_Gamma_2_in_axes5_x*v->six_r_w_2_in_axes5_x - six_r_d_phi_5_in_axes5_xx;
+    const real six_r_d_c_in_axes5_xy = six_r_d_Gamma_5_in_axes5_y*six_r_w_5_t_5 -
+        six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
+        six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
+        six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
+        six_r_d_Gamma_2_in_axes5_y*v->six_r_w_2_in_axes5_x +
+        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        m->six_r_h_5_in_spec5_z[i]*(v->six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y -
+        v->six_r_J_5_t*six_r_w_4_in_axes5_y - v->six_r_e_2_in_axes5_y*six_r_w_3_t +
+        v->six_r_e_2_in_axes5_y*v->six_r_w_2_in_axes5_y);
+    const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 -
+        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
+        six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
+        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
+        six_r_d_Gamma_2_in_axes5_z*v->six_r_w_2_in_axes5_x +
+        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_d_c_in_axes5_yy = six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t -
+        six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
+        six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
+        six_r_d_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
+        six_r_d_Gamma_2_in_axes5_y*v->six_r_w_2_in_axes5_y +
+        m->six_r_h_5_in_spec5_z[i]*(v->six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
+        v->six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v->six_r_e_2_in_axes5_x*six_r_w_3_t +
+        v->six_r_e_2_in_axes5_x*v->six_r_w_2_in_axes5_y) -
+        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_d_c_in_axes5_yz = six_r_d_Gamma_3_in_axes5_z*six_r_w_3_t -
+        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
+        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
+        six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
+        six_r_d_Gamma_2_in_axes5_z*v->six_r_w_2_in_axes5_y +
+        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
+        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i];
+    /* (six_r-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real six_r_Q_t = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy;
+    const real six_r_Q_t_2 = R(0.5)*six_r_Q_t;
+    const real six_r_Q_t_3 = six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
+        six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z +
+        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z +
+        six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z +
+        six_r_d_Gamma_2_in_axes5_z*v->six_r_w_2_in_axes5_z +
+        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i] + six_r_d_c_in_axes5_xx;
+    const real six_r_Q_t_4 = R(0.5)*six_r_Q_t_3;
+    const real six_r_Q_t_5 = v->axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xy +
+        v->axis_z_six_r_axes5_x*six_r_d_c_in_axes5_yz - v->axis_y_six_r_axes5_x*six_r_Q_t_2;
+    const real six_r_Q_t_6 = v->axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xy +
+        v->axis_z_six_r_axes5_y*six_r_d_c_in_axes5_yz - v->axis_y_six_r_axes5_y*six_r_Q_t_2;
+    const real six_r_Q_t_7 = v->axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xy +
+        v->axis_z_six_r_axes5_z*six_r_d_c_in_axes5_yz - v->axis_y_six_r_axes5_z*six_r_Q_t_2;
+    const real six_r_Q_t_8 = v->axis_z_six_r_axes5_x*six_r_Q_t_4 -
+        v->axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xz;
+    const real six_r_Q_t_9 = v->axis_z_six_r_axes5_y*six_r_Q_t_4 -
+        v->axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xz;
+    const real six_r_Q_t_10 = v->axis_z_six_r_axes5_z*six_r_Q_t_4 -
+        v->axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xz;
+    const real six_r_Q_t_11 = v->axis_y_six_r_axes5_x*six_r_Q_t_5 -
+        v->axis_z_six_r_axes5_x*six_r_Q_t_8;
+    v->six_r_Q_xx = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_11;
+    v->six_r_Q_xy = v->axis_z_six_r_axes5_x*six_r_Q_t_9 + v->axis_z_six_r_axes5_y*six_r_Q_t_8
+        - v->axis_y_six_r_axes5_x*six_r_Q_t_6 - v->axis_y_six_r_axes5_y*six_r_Q_t_5;
+    v->six_r_Q_xz = v->axis_z_six_r_axes5_x*six_r_Q_t_10 + v->axis_z_six_r_axes5_z*six_r_Q_t_8
+        - v->axis_y_six_r_axes5_x*six_r_Q_t_7 - v->axis_y_six_r_axes5_z*six_r_Q_t_5;
+    const real six_r_Q_t_12 = v->axis_y_six_r_axes5_y*six_r_Q_t_6 -
+        v->axis_z_six_r_axes5_y*six_r_Q_t_9;
+    v->six_r_Q_yy = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_12;
+    v->six_r_Q_yz = v->axis_z_six_r_axes5_y*six_r_Q_t_10 + v->axis_z_six_r_axes5_z*six_r_Q_t_9
+        - v->axis_y_six_r_axes5_y*six_r_Q_t_7 - v->axis_y_six_r_axes5_z*six_r_Q_t_6;
+    const real six_r_Q_t_13 = v->axis_y_six_r_axes5_z*six_r_Q_t_7 -
+        v->axis_z_six_r_axes5_z*six_r_Q_t_10;
+    v->six_r_Q_zz = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_13;
+    /* (M_ta) coupling block of M */
+    const real six_r_M_ta_t = v->axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xx +
+        v->axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yx +
+        v->axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zx;
+    const real six_r_M_ta_t_2 = v->axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xx +
+        v->axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yx +
+        v->axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zx;
+    const real six_r_M_ta_t_3 = v->axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xx +
+        v->axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yx +
+        v->axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zx;
+    const real six_r_M_ta_t_4 = v->axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xy +
+        v->axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yy +
+        v->axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zy;
+    const real six_r_M_ta_t_5 = v->axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xy +
+        v->axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yy +
+        v->axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zy;
+    const real six_r_M_ta_t_6 = v->axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xy +
+        v->axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yy +
+        v->axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zy;
+    const real six_r_M_ta_t_7 = v->axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xz +
+        v->axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yz +
+        v->axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zz;
+    const real six_r_M_ta_t_8 = v->axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xz +
+        v->axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yz +
+        v->axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zz;
+    const real six_r_M_ta_t_9 = v->axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xz +
+        v->axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
+        v->axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz;
+    const real six_r_M_ta_t_10 = -v->six_r_Q_xy*v->six_r_q_z;
+    const real six_r_M_ta_t_11 = v->six_r_Q_xz*v->six_r_q_y;
+    const real six_r_M_ta_t_12 = v->six_r_Q_yz*v->six_r_q_x;
+    v->six_r_M_ta_t_13 = six_r_M_ta_t_10 + six_r_M_ta_t_11 -
+        v->axis_x_six_r_axes5_x*six_r_M_ta_t - v->axis_y_six_r_axes5_x*six_r_M_ta_t_4 -
+        v->axis_z_six_r_axes5_x*six_r_M_ta_t_7;
+    v->six_r_M_ta_t_14 = v->six_r_Q_xx*v->six_r_q_z - v->six_r_Q_xz*v->six_r_q_x -
+        v->axis_x_six_r_axes5_y*six_r_M_ta_t - v->axis_y_six_r_axes5_y*six_r_M_ta_t_4 -
+        v->axis_z_six_r_axes5_y*six_r_M_ta_t_7;
+    v->six_r_M_ta_t_15 = v->six_r_Q_xy*v->six_r_q_x - v->six_r_Q_xx*v->six_r_q_y -
+        v->axis_x_six_r_axes5_z*six_r_M_ta_t - v->axis_y_six_r_axes5_z*six_r_M_ta_t_4 -
+        v->axis_z_six_r_axes5_z*six_r_M_ta_t_7;
+    v->six_r_M_ta_t_16 = v->six_r_Q_yz*v->six_r_q_y - v->six_r_Q_yy*v->six_r_q_z -
+        v->axis_x_six_r_axes5_x*six_r_M_ta_t_2 - v->axis_y_six_r_axes5_x*six_r_M_ta_t_5 -
+        v->axis_z_six_r_axes5_x*six_r_M_ta_t_8;
+    v->six_r_M_ta_t_17 = six_r_M_ta_t_10 + six_r_M_ta_t_12 +
+        v->axis_x_six_r_axes5_y*six_r_M_ta_t_2 + v->axis_y_six_r_axes5_y*six_r_M_ta_t_5 +
+        v->axis_z_six_r_axes5_y*six_r_M_ta_t_8;
+    v->six_r_M_ta_t_18 = v->six_r_Q_yy*v->six_r_q_x - v->six_r_Q_xy*v->six_r_q_y -
+        v->axis_x_six_r_axes5_z*six_r_M_ta_t_2 - v->axis_y_six_r_axes5_z*six_r_M_ta_t_5 -
+        v->axis_z_six_r_axes5_z*six_r_M_ta_t_8;
+    v->six_r_M_ta_t_19 = v->six_r_Q_zz*v->six_r_q_y - v->six_r_Q_yz*v->six_r_q_z -
+        v->axis_x_six_r_axes5_x*six_r_M_ta_t_3 - v->axis_y_six_r_axes5_x*six_r_M_ta_t_6 -
+        v->axis_z_six_r_axes5_x*six_r_M_ta_t_9;
+    v->six_r_M_ta_t_20 = v->six_r_Q_xz*v->six_r_q_z - v->six_r_Q_zz*v->six_r_q_x -
+        v->axis_x_six_r_axes5_y*six_r_M_ta_t_3 - v->axis_y_six_r_axes5_y*six_r_M_ta_t_6 -
+        v->axis_z_six_r_axes5_y*six_r_M_ta_t_9;
+    v->six_r_M_ta_t_21 = six_r_M_ta_t_12 - six_r_M_ta_t_11 -
+        v->axis_x_six_r_axes5_z*six_r_M_ta_t_3 - v->axis_y_six_r_axes5_z*six_r_M_ta_t_6 -
+        v->axis_z_six_r_axes5_z*six_r_M_ta_t_9;
+    /* (M_aa) rotational block of M */
+    v->six_r_M_aa_t = six_r_d_G_m_xz*v->six_r_q_y - six_r_d_G_m_xy*v->six_r_q_z +
+        v->six_r_n_m1_x*(v->axis_x_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_x +
+        v->axis_y_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_y +
+        v->axis_z_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_z) +
+        v->six_r_n_m2_x*(v->axis_x_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_x +
+        v->axis_y_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_y +
+        v->axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) +
+        v->six_r_M_ta_t_19*v->six_r_q_y - v->six_r_M_ta_t_16*v->six_r_q_z;
+    v->six_r_M_aa_t_2 = six_r_d_G_m_xx*v->six_r_q_z - six_r_d_G_m_xz*v->six_r_q_x +
+        six_r_dalpha_G_m1_y*v->six_r_n_m1_x + six_r_dalpha_G_m2_y*v->six_r_n_m2_x +
+        v->six_r_M_ta_t_17*v->six_r_q_z + v->six_r_M_ta_t_20*v->six_r_q_y;
+    v->six_r_M_aa_t_3 = six_r_d_G_m_xy*v->six_r_q_x - six_r_d_G_m_xx*v->six_r_q_y +
+        six_r_dalpha_G_m1_z*v->six_r_n_m1_x + six_r_dalpha_G_m2_z*v->six_r_n_m2_x +
+        v->six_r_M_ta_t_21*v->six_r_q_y - v->six_r_M_ta_t_18*v->six_r_q_z;
+    v->six_r_M_aa_t_4 = six_r_d_G_m_yx*v->six_r_q_z -
+        v->six_r_q_x*(six_r_d_G_m1_z*v->six_r_n_m1_y + six_r_d_G_m2_z*v->six_r_n_m2_y) +
+        six_r_dalpha_G_m1_y*v->six_r_n_m1_y + six_r_dalpha_G_m2_y*v->six_r_n_m2_y +
+        v->six_r_M_ta_t_14*v->six_r_q_z - v->six_r_M_ta_t_20*v->six_r_q_x;
+    v->six_r_M_aa_t_5 = v->six_r_q_x*(six_r_d_G_m1_y*v->six_r_n_m1_y +
+        six_r_d_G_m2_y*v->six_r_n_m2_y) - six_r_d_G_m_yx*v->six_r_q_y +
+        six_r_dalpha_G_m1_z*v->six_r_n_m1_y + six_r_dalpha_G_m2_z*v->six_r_n_m2_y +
+        v->six_r_M_ta_t_15*v->six_r_q_z - v->six_r_M_ta_t_21*v->six_r_q_x;
+    v->six_r_M_aa_t_6 = v->six_r_q_x*(six_r_d_G_m1_y*v->six_r_n_m1_z +
+        six_r_d_G_m2_y*v->six_r_n_m2_z) - v->six_r_q_y*(six_r_d_G_m1_x*v->six_r_n_m1_z +
+        six_r_d_G_m2_x*v->six_r_n_m2_z) + six_r_dalpha_G_m1_z*v->six_r_n_m1_z +
+        six_r_dalpha_G_m2_z*v->six_r_n_m2_z + v->six_r_M_ta_t_18*v->six_r_q_x -
+        v->six_r_M_ta_t_15*v->six_r_q_y;
 }
 
 INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_six_r *v)
 {
-    /* (six_r-u_1) centripetal acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real six_r_u_1_x = omega_y*v->six_r_S_dot_t_16 - omega_z*v->six_r_S_dot_t_15;
-    const real omega_x = V[3*w + j];
-    const real six_r_u_1_y = omega_z*v->six_r_S_dot_t_14 - omega_x*v->six_r_S_dot_t_16;
-    const real six_r_u_1_z = omega_x*v->six_r_S_dot_t_15 - omega_y*v->six_r_S_dot_t_14;
-    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-    const real six_r_bias_t_3 = m->six_r_joint2_offset_x[i]*v->six_r_s_2;
-    const real six_r_bias_t_4 = six_r_bias_t_3*v->six_r_c_3 +
-        v->six_r_d_2_in_spec2_x*v->six_r_s_3;
-    const real six_r_bias_t_5 = v->six_r_c_3*v->six_r_d_2_in_spec2_x -
-        six_r_bias_t_3*v->six_r_s_3;
-    const real six_r_bias_t_10 = m->six_r_joint3_offset_x[i]*v->six_r_s_3;
-    const real six_r_bias_t_11 = v->six_r_c_3*m->six_r_joint3_offset_x[i];
-    v->six_r_u_1_x = six_r_u_1_x;
-    v->six_r_u_1_y = six_r_u_1_y;
-    v->six_r_u_1_z = six_r_u_1_z;
-    v->six_r_bias_t_4 = six_r_bias_t_4;
-    v->six_r_bias_t_5 = six_r_bias_t_5;
-    v->six_r_bias_t_10 = six_r_bias_t_10;
-    v->six_r_bias_t_11 = six_r_bias_t_11;
-}
-
-INLINE void stage_six_r_Z_joint_accelerations(values_six_r *v)
-{
-    /* (six_r-qd_1) rate of joint 1 */
-    const real six_r_qd_1_t = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_74;
-    const real six_r_qd_1_t_2 = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_75;
-    const real six_r_qd_1_t_3 = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_76;
-    const real six_r_qd_1_t_4 = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_77;
-    const real six_r_qd_1_t_5 = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_78;
-    v->six_r_qd_1_t = six_r_qd_1_t;
-    v->six_r_qd_1_t_2 = six_r_qd_1_t_2;
-    v->six_r_qd_1_t_3 = six_r_qd_1_t_3;
-    v->six_r_qd_1_t_4 = six_r_qd_1_t_4;
-    v->six_r_qd_1_t_5 = six_r_qd_1_t_5;
-}
-
-INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r *v)
-{
-    /* (six_r-w_2) force part of reciprocal wrench 2 */
-    const real six_r_w_2_t = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_74;
-    const real six_r_w_2_t_2 = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_75;
-    const real six_r_w_2_t_3 = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_76;
-    const real six_r_w_2_t_4 = v->inv_six_r_w_1_t_67*v->inv_six_r_w_1_t_79*v->six_r_w_1_t_73;
-    const real six_r_w_2_in_axes5_x = v->inv_six_r_w_1_t_67*v->six_r_w_1_t_68 -
-        six_r_w_2_t*six_r_w_2_t_4;
-    const real six_r_w_2_in_axes5_y = six_r_w_2_t_2*six_r_w_2_t_4 -
-        v->inv_six_r_w_1_t_67*v->six_r_w_1_t_69;
-    const real six_r_w_2_in_axes5_z = v->inv_six_r_w_1_t_67*v->six_r_w_1_t_70 -
-        six_r_w_2_t_3*six_r_w_2_t_4;
-    const real six_r_w_2_x = v->axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x +
-        v->axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y +
-        v->axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z;
-    const real six_r_w_2_y = v->axis_x_six_r_axes5_y*six_r_w_2_in_axes5_x +
-        v->axis_y_six_r_axes5_y*six_r_w_2_in_axes5_y +
-        v->axis_z_six_r_axes5_y*six_r_w_2_in_axes5_z;
-    const real six_r_w_2_z = v->axis_x_six_r_axes5_z*six_r_w_2_in_axes5_x +
-        v->axis_y_six_r_axes5_z*six_r_w_2_in_axes5_y +
-        v->axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z;
-    /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
-    const real six_r_m1_w_2_t = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_77;
-    const real six_r_m1_w_2 = m->six_r_size[i]*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_71 -
-        six_r_m1_w_2_t*six_r_w_2_t_4);
-    /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
-    const real six_r_m2_w_2_t = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_78;
-    const real six_r_m2_w_2 = m->six_r_size[i]*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_72 -
-        six_r_m2_w_2_t*six_r_w_2_t_4);
-    /* (six_r-o_2) moment part of reciprocal wrench 2 */
-    const real six_r_o_2_t = six_r_m1_w_2*v->six_r_n_m2_in_axes5_z;
-    const real six_r_o_2_in_axes5_z = six_r_m2_w_2*v->six_r_n_m2_in_axes5_z;
-    const real six_r_o_2_in_axes5_y = six_r_m1_w_2*v->six_r_n_m1_in_axes5_y -
-        v->six_r_end_p1_in_axes5_z*six_r_m2_w_2;
-    /* (six_r-qd_1) rate of joint 1 */
-    const real six_r_qd_1_t = v->six_r_eta_1*m->six_r_size[i];
-    const real six_r_qd_1_t_2 = v->six_r_eta_2_t*m->six_r_size[i];
-    const real six_r_qd_1_t_3 = v->inv_six_r_w_1_t_79*(v->six_r_S_dot_in_axes5_y*six_r_w_2_t_2
-        + six_r_m2_w_2_t*six_r_qd_1_t_2 - v->six_r_S_dot_in_axes5_x*six_r_w_2_t -
-        v->six_r_S_dot_in_axes5_z*six_r_w_2_t_3 - six_r_m1_w_2_t*six_r_qd_1_t);
-    const real six_r_qd_1_t_4 =
-        -v->inv_six_r_w_1_t_67*(v->six_r_S_dot_in_axes5_y*v->six_r_w_1_t_69 +
-        six_r_qd_1_t_2*v->six_r_w_1_t_72 - v->six_r_S_dot_in_axes5_x*v->six_r_w_1_t_68 -
-        v->six_r_S_dot_in_axes5_z*v->six_r_w_1_t_70 - six_r_qd_1_t*v->six_r_w_1_t_71 -
-        six_r_qd_1_t_3*v->six_r_w_1_t_73);
-    const real six_r_qd_1 = v->inv_six_r_w_1_t_49*(v->six_r_S_dot_in_axes5_x*v->six_r_w_1_t_50
-        + v->six_r_S_dot_in_axes5_z*v->six_r_w_1_t_52 + six_r_qd_1_t*v->six_r_w_1_t_53 -
-        v->six_r_S_dot_in_axes5_y*v->six_r_w_1_t_51 - six_r_qd_1_t_2*v->six_r_w_1_t_54 +
-        six_r_qd_1_t_3*v->six_r_w_1_t_61 - six_r_qd_1_t_4*v->six_r_w_1_t_55);
-    /* (six_r-qd_4) rate of joint 4 */
-    const real six_r_qd_4_t =
-        v->inv_six_r_w_1_t_28*(v->six_r_S_dot_in_axes5_y*v->six_r_w_1_t_29 +
-        six_r_qd_1_t_2*v->six_r_w_1_t_32 - v->six_r_S_dot_in_axes5_z*v->six_r_w_1_t_30 -
-        six_r_qd_1_t*v->six_r_w_1_t_31 + six_r_qd_1_t_3*v->six_r_w_1_t_44 -
-        six_r_qd_1_t_4*v->six_r_w_1_t_39 - six_r_qd_1*v->six_r_w_1_t_33);
-    /* (six_r-qd_5) rate of joint 5 */
-    const real six_r_qd_5_t = v->inv_six_r_w_1_t_12*(six_r_qd_1_t_2*v->six_r_w_1_t_14 -
-        v->six_r_S_dot_in_axes5_y*v->six_r_w_1_t_13 + six_r_qd_1_t_3*v->six_r_w_1_t_25 +
-        six_r_qd_1_t_4*v->six_r_w_1_t_22 + six_r_qd_1*v->six_r_w_1_t_18 -
-        six_r_qd_4_t*v->six_r_w_1_t_15);
-    /* (six_r-omega_1) angular velocity of link 1 */
-    const real six_r_omega_1_in_axes2_x = v->six_r_c_2*six_r_qd_1;
-    const real six_r_omega_1_in_axes2_y = -six_r_qd_1*v->six_r_s_2;
-    const real six_r_omega_1_in_axes5_x = v->six_r_e_1_in_axes5_x*six_r_qd_1;
-    const real six_r_omega_1_in_axes5_y = v->six_r_e_1_in_axes5_y*six_r_qd_1;
-    const real six_r_omega_1_in_axes5_z = v->six_r_e_1_in_axes5_z*six_r_qd_1;
-    /* (six_r-W_1) centripetal tensor of link 1 */
-    const real six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y;
-    const real six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z;
-    const real six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z;
-    /* (six_r-omega_2) angular velocity of link 2 */
-    const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v->six_r_s_3 -
-        v->six_r_c_3*six_r_omega_1_in_axes2_y;
-    const real six_r_omega_2_in_axes3_y = v->six_r_c_3*six_r_omega_1_in_axes2_x +
-        six_r_omega_1_in_axes2_y*v->six_r_s_3;
-    const real six_r_omega_2_in_axes5_x = v->six_r_e_2_in_axes5_x*six_r_qd_1_t_4 +
-        six_r_omega_1_in_axes5_x;
-    const real six_r_omega_2_in_axes5_y = v->six_r_e_2_in_axes5_y*six_r_qd_1_t_4 +
-        six_r_omega_1_in_axes5_y;
-    const real six_r_omega_2_in_axes5_z = v->six_r_c_4*six_r_qd_1_t_4 +
-        six_r_omega_1_in_axes5_z;
-    /* (six_r-W_2) centripetal tensor of link 2 */
-    const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4;
-    const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
-    const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
-    const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
-    const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
-    /* (six_r-omega_3) angular velocity of link 3 */
-    const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_4 - six_r_qd_1_t_3;
-    const real six_r_omega_3_in_axes4_x = six_r_omega_3_in_axes3_z*v->six_r_s_4 -
-        v->six_r_c_4*six_r_omega_2_in_axes3_x;
-    const real six_r_omega_3_in_axes4_y = v->six_r_c_4*six_r_omega_3_in_axes3_z +
-        six_r_omega_2_in_axes3_x*v->six_r_s_4;
-    const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v->six_r_s_5;
-    const real six_r_omega_3_t_2 = v->six_r_c_5*six_r_omega_3_in_axes4_x;
-    const real six_r_omega_3_in_axes5_x = v->six_r_c_5*six_r_omega_2_in_axes3_y +
-        six_r_omega_3_t;
-    const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
-        six_r_omega_2_in_axes3_y*v->six_r_s_5;
-    /* (six_r-W_3) centripetal tensor of link 3 */
-    const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
-    const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
-    const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
-    const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
-    const real six_r_W_3_t_3 = six_r_W_3_t_2 + six_r_W_3_t;
-    const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
-    const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
-    /* (six_r-omega_4) angular velocity of link 4 */
-    const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t;
-    const real six_r_omega_4_in_axes5_x = v->six_r_c_5*six_r_omega_4_in_axes4_z +
-        six_r_omega_3_t;
-    const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
-        six_r_omega_4_in_axes4_z*v->six_r_s_5;
-    /* (six_r-W_4) centripetal tensor of link 4 */
-    const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
-    const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
-    const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
-    const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
-    /* (six_r-omega_5) angular velocity of link 5 */
-    const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y - six_r_qd_5_t;
-    /* (six_r-W_5) centripetal tensor of link 5 */
-    const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
-    const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
-    const real six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2;
-    const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
-    const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
-    /* (six_r-S_ddot) acceleration of the connection point */
-    const real six_r_S_ddot_in_axes5_x = v->axis_x_six_r_axes5_x*v->six_r_S_ddot_x +
-        v->axis_x_six_r_axes5_y*v->six_r_S_ddot_y + v->axis_x_six_r_axes5_z*v->six_r_S_ddot_z;
-    const real six_r_S_ddot_in_axes5_y = v->axis_y_six_r_axes5_x*v->six_r_S_ddot_x +
-        v->axis_y_six_r_axes5_y*v->six_r_S_ddot_y + v->axis_y_six_r_axes5_z*v->six_r_S_ddot_z;
-    const real six_r_S_ddot_in_axes5_z = v->axis_z_six_r_axes5_x*v->six_r_S_ddot_x +
-        v->axis_z_six_r_axes5_y*v->six_r_S_ddot_y + v->axis_z_six_r_axes5_z*v->six_r_S_ddot_z;
-    /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4;
-    const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v->six_r_s_3 -
-        v->six_r_c_3*six_r_zeta_2_in_axes2_y;
-    const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v->six_r_c_3 +
-        v->six_r_s_3*six_r_zeta_2_in_axes2_y;
-    const real six_r_zeta_2_t = v->six_r_c_4*six_r_zeta_2_in_axes3_x;
-    const real six_r_zeta_2_in_axes5_z = v->six_r_s_4*six_r_zeta_2_in_axes3_x;
-    const real six_r_zeta_2_in_axes5_x = v->six_r_c_5*six_r_zeta_2_in_axes3_y -
-        v->six_r_s_5*six_r_zeta_2_t;
-    const real six_r_zeta_2_in_axes5_y = -v->six_r_s_5*six_r_zeta_2_in_axes3_y -
-        v->six_r_c_5*six_r_zeta_2_t;
-    /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-    const real six_r_zeta_3_t = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3;
-    const real six_r_zeta_3_in_axes3_y = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3;
-    /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x - six_r_zeta_3_t;
-    const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y + six_r_zeta_3_in_axes3_y;
-    const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v->six_r_c_4;
-    const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v->six_r_s_4;
-    /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-    const real six_r_zeta_4_in_axes4_x = -six_r_omega_3_in_axes4_y*six_r_qd_4_t;
-    const real six_r_zeta_4_in_axes4_y = six_r_omega_3_in_axes4_x*six_r_qd_4_t;
-    /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
-    const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
-    const real six_r_beta_4_in_axes4_y = six_r_zeta_4_in_axes4_y + six_r_beta_3_in_axes4_y;
-    const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v->six_r_c_5;
-    const real six_r_beta_4_in_axes5_x = six_r_beta_4_t +
-        six_r_beta_4_in_axes4_x*v->six_r_s_5;
-    const real six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*v->six_r_s_5;
-    const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v->six_r_c_5 -
-        six_r_beta_4_t_2;
-    /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
-    const real six_r_zeta_5_t = six_r_omega_4_in_axes5_y*six_r_qd_5_t;
-    const real six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x*six_r_qd_5_t;
-    /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
-    const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x - six_r_zeta_5_t;
-    const real six_r_beta_5_in_axes5_y = six_r_zeta_5_in_axes5_y + six_r_beta_4_in_axes5_y;
-    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-    const real six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
-    const real six_r_bias_t_11 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
-    const real six_r_bias_t_12 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x;
-    const real six_r_bias_t_13 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y;
-    const real six_r_bias_t_14 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z;
-    const real six_r_bias_t_15 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
-    const real six_r_bias_t_16 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
-    const real six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
-    const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
-    const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_y +
-        six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_z -
-        v->six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-        v->six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) +
-        v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
-        six_r_W_5_t_3*m->six_r_platform_joint_offset_x[i] -
-        v->six_r_bias_t_8*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
-        v->six_r_bias_t_9*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
-        v->six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
-        six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
-        v->six_r_d_5_in_axes5_x*(six_r_bias_t_10 + six_r_W_5_t);
-    const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_z -
-        v->six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-        v->six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17) +
-        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-        six_r_bias_t_18*v->six_r_d_5_in_axes5_x +
-        six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
-        v->six_r_bias_t_8*(six_r_bias_t_10 +
-        six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
-        v->six_r_bias_t_9*(six_r_bias_t_10 + six_r_bias_t_11) +
-        v->six_r_d_4_in_axes5_x*(six_r_beta_3_in_axes4_y + six_r_W_3_in_axes5_xy);
-    const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_y -
-        v->six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
-        v->six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16) +
-        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-        v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-        v->six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v->six_r_c_5 +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) - v->six_r_bias_t_8*(six_r_beta_4_t
-        + six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v->six_r_s_5) +
-        v->six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-        six_r_beta_4_in_axes5_y) -
-        v->six_r_bias_t_9*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y +
-        six_r_beta_4_in_axes5_x) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
-        - six_r_beta_5_in_axes5_y);
-    /* (six_r-rel) acceleration of the connection point left to the joint accelerations */
-    const real six_r_rel_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_bias_in_axes5_x;
-    const real six_r_rel_in_axes5_y = six_r_S_ddot_in_axes5_y - six_r_bias_in_axes5_y;
-    const real six_r_rel_in_axes5_z = six_r_S_ddot_in_axes5_z - six_r_bias_in_axes5_z;
-    /* (six_r-nd_m1) rate of moment direction 1 */
-    const real six_r_nd_m1_in_axes5_x = -v->six_r_nd_m1_t -
-        v->six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
-    const real six_r_nd_m1_in_axes5_y = v->six_r_eta_2_t -
-        v->six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
-    /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real six_r_nu_1_t = v->six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
-    const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v->six_r_n_m2_in_axes5_z -
-        six_r_beta_5_in_axes5_y*v->six_r_n_m1_in_axes5_y;
-    const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - v->six_r_omega_in_axes5_x;
-    const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v->six_r_omega_in_axes5_y;
-    const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v->six_r_omega_in_axes5_z;
-    const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
-        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
-        six_r_nu_1_t_5*(v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x + six_r_nu_1_t);
-    const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
-    /* (six_r-nd_m2) rate of moment direction 2 */
-    const real six_r_nd_m2_in_axes5_y = v->six_r_eta_1 -
-        v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
-    const real six_r_nd_m2_in_axes5_z = v->six_r_nd_m1_t -
-        v->six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
-    /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
-    const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v->six_r_end_p1_in_axes5_z -
-        six_r_beta_4_in_axes4_y*v->six_r_n_m2_in_axes5_z;
-    const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
-        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
-        six_r_nu_1_t_3*(v->six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z + six_r_nu_1_t);
-    const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
-    /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real six_r_etad_1 = six_r_nu_1 - v->six_r_etad_1_t;
-    /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
-    const real six_r_etad_2 = six_r_nu_2 - v->six_r_etad_2_t;
-    /* (six_r-qdd_1) acceleration of joint 1 */
-    const real six_r_qdd_1_t = six_r_etad_1*m->six_r_size[i];
-    const real six_r_qdd_1_t_2 = six_r_etad_2*m->six_r_size[i];
-    const real six_r_qdd_1_t_3 = v->inv_six_r_w_1_t_79*(six_r_m1_w_2_t*six_r_qdd_1_t +
-        six_r_m2_w_2_t*six_r_qdd_1_t_2 + six_r_rel_in_axes5_x*six_r_w_2_t -
-        six_r_rel_in_axes5_y*six_r_w_2_t_2 + six_r_rel_in_axes5_z*six_r_w_2_t_3);
-    const real six_r_qdd_1_t_4 = v->inv_six_r_w_1_t_67*(six_r_qdd_1_t*v->six_r_w_1_t_71 +
-        six_r_qdd_1_t_2*v->six_r_w_1_t_72 + six_r_rel_in_axes5_x*v->six_r_w_1_t_68 -
-        six_r_rel_in_axes5_y*v->six_r_w_1_t_69 + six_r_rel_in_axes5_z*v->six_r_w_1_t_70 -
-        six_r_qdd_1_t_3*v->six_r_w_1_t_73);
-    const real six_r_qdd_1_t_5 = v->inv_six_r_w_1_t_49*(six_r_rel_in_axes5_y*v->six_r_w_1_t_51
-        - six_r_qdd_1_t*v->six_r_w_1_t_53 - six_r_qdd_1_t_2*v->six_r_w_1_t_54 -
-        six_r_rel_in_axes5_x*v->six_r_w_1_t_50 - six_r_rel_in_axes5_z*v->six_r_w_1_t_52 +
-        six_r_qdd_1_t_3*v->six_r_w_1_t_61 + six_r_qdd_1_t_4*v->six_r_w_1_t_55);
-    /* (six_r-qdd_4) acceleration of joint 4 */
-    const real six_r_qdd_4 = v->inv_six_r_w_1_t_28*(six_r_qdd_1_t*v->six_r_w_1_t_31 +
-        six_r_qdd_1_t_2*v->six_r_w_1_t_32 - six_r_rel_in_axes5_y*v->six_r_w_1_t_29 +
-        six_r_rel_in_axes5_z*v->six_r_w_1_t_30 + six_r_qdd_1_t_3*v->six_r_w_1_t_44 +
-        six_r_qdd_1_t_4*v->six_r_w_1_t_39 - six_r_qdd_1_t_5*v->six_r_w_1_t_33);
-    /* (six_r-alpha_1) angular acceleration of link 1 */
-    const real six_r_alpha_1_t = v->six_r_c_2*six_r_qdd_1_t_5;
-    const real six_r_alpha_1_in_axes2_y = six_r_qdd_1_t_5*v->six_r_s_2;
-    /* (six_r-alpha_2) angular acceleration of link 2 */
-    const real six_r_alpha_2_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_t;
-    const real six_r_alpha_2_in_axes2_y = six_r_zeta_2_in_axes2_y + six_r_alpha_1_in_axes2_y;
-    /* (six_r-B_2) acceleration tensor of link 2 */
-    const real six_r_B_2_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_t_4;
-    const real six_r_B_2_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_t_4;
-    const real six_r_B_2_in_axes2_zx = -six_r_zeta_2_in_axes2_y - six_r_alpha_2_in_axes2_y;
-    const real six_r_B_2_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_in_axes2_x;
-    /* (six_r-alpha_3) angular acceleration of link 3 */
-    const real six_r_alpha_3_in_axes3_x = six_r_alpha_2_in_axes2_x*v->six_r_s_3 -
-        six_r_zeta_3_t - six_r_alpha_2_in_axes2_y*v->six_r_c_3;
-    const real six_r_alpha_3_in_axes3_y = six_r_zeta_3_in_axes3_y +
-        six_r_alpha_2_in_axes2_x*v->six_r_c_3 + six_r_alpha_2_in_axes2_y*v->six_r_s_3;
-    const real six_r_alpha_3_in_axes3_z = six_r_qdd_1_t_3 + six_r_qdd_1_t_4;
-    /* (six_r-B_3) acceleration tensor of link 3 */
-    const real six_r_B_3_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_in_axes3_z;
-    const real six_r_B_3_in_axes3_xz = six_r_W_3_in_axes3_xz + six_r_alpha_3_in_axes3_y;
-    const real six_r_B_3_in_axes3_yx = six_r_W_3_in_axes3_xy + six_r_alpha_3_in_axes3_z;
-    const real six_r_B_3_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_in_axes3_x;
-    const real six_r_B_3_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_in_axes3_y;
-    const real six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_in_axes3_x;
-    /* (six_r-alpha_4) angular acceleration of link 4 */
-    const real six_r_alpha_4_in_axes4_x = six_r_zeta_4_in_axes4_x +
-        six_r_alpha_3_in_axes3_z*v->six_r_s_4 - six_r_alpha_3_in_axes3_x*v->six_r_c_4;
-    const real six_r_alpha_4_in_axes4_y = six_r_zeta_4_in_axes4_y +
-        six_r_alpha_3_in_axes3_z*v->six_r_c_4 + six_r_alpha_3_in_axes3_x*v->six_r_s_4;
-    const real six_r_alpha_4_in_axes4_z = six_r_qdd_4 + six_r_alpha_3_in_axes3_y;
-    /* (six_r-B_4) acceleration tensor of link 4 */
-    const real six_r_B_4_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_in_axes4_z;
-    const real six_r_B_4_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_in_axes4_y;
-    const real six_r_B_4_in_axes4_yx = six_r_W_4_in_axes4_xy + six_r_alpha_4_in_axes4_z;
-    const real six_r_B_4_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_in_axes4_x;
-    const real six_r_B_4_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_in_axes4_y;
-    const real six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_in_axes4_x;
-    /* (six_r-alpha_5) angular acceleration of link 5 */
-    const real six_r_alpha_5_in_axes5_x = six_r_alpha_4_in_axes4_x*v->six_r_s_5 -
-        six_r_zeta_5_t + six_r_alpha_4_in_axes4_z*v->six_r_c_5;
-    const real six_r_alpha_5_in_axes5_y = six_r_zeta_5_in_axes5_y +
-        six_r_alpha_4_in_axes4_x*v->six_r_c_5 - six_r_alpha_4_in_axes4_z*v->six_r_s_5;
-    const real six_r_alpha_5_in_axes5_z =
-        v->inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*v->six_r_w_1_t_14 +
-        six_r_rel_in_axes5_y*v->six_r_w_1_t_13 + six_r_qdd_1_t_3*v->six_r_w_1_t_25 -
-        six_r_qdd_1_t_4*v->six_r_w_1_t_22 + six_r_qdd_1_t_5*v->six_r_w_1_t_18 -
-        six_r_qdd_4*v->six_r_w_1_t_15) + six_r_alpha_4_in_axes4_y;
-    /* (six_r-B_5) acceleration tensor of link 5 */
-    const real six_r_B_5_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_in_axes5_z;
-    const real six_r_B_5_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_in_axes5_y;
-    const real six_r_B_5_in_axes5_yx = six_r_W_4_in_axes5_xy + six_r_alpha_5_in_axes5_z;
-    const real six_r_B_5_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_in_axes5_x;
-    const real six_r_B_5_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_in_axes5_y;
-    const real six_r_B_5_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_in_axes5_x;
-    /* (six_r-a_o_3) acceleration of the origin of joint 3 */
-    const real six_r_a_o_3_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
-    const real six_r_a_o_3_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4;
-    const real six_r_a_o_3_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_t_2 +
-        six_r_a_o_3_t);
-    const real six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*m->six_r_joint3_offset_x[i];
-    const real six_r_a_o_3_in_axes2_z = six_r_B_2_in_axes2_zx*m->six_r_joint3_offset_x[i];
-    const real six_r_a_o_3_in_axes3_x = six_r_a_o_3_in_axes2_x*v->six_r_s_3 -
-        six_r_a_o_3_in_axes2_y*v->six_r_c_3;
-    const real six_r_a_o_3_in_axes3_y = six_r_a_o_3_in_axes2_x*v->six_r_c_3 +
-        six_r_a_o_3_in_axes2_y*v->six_r_s_3;
-    /* (six_r-a_o_4) acceleration of the origin of joint 4 */
-    const real six_r_a_o_4_in_axes3_x = six_r_B_3_in_axes3_xy*m->six_r_joint4_offset_x[i] +
-        six_r_a_o_3_in_axes3_x;
-    const real six_r_a_o_4_in_axes3_y = six_r_a_o_3_in_axes3_y -
-        six_r_W_3_t_3*m->six_r_joint4_offset_x[i];
-    const real six_r_a_o_4_in_axes3_z = six_r_a_o_3_in_axes2_z +
-        six_r_B_3_in_axes3_zy*m->six_r_joint4_offset_x[i];
-    /* (six_r-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real six_r_acc_3_in_axes3_x = six_r_a_o_3_in_axes3_x - v->six_r_g_in_axes3_x;
-    const real six_r_acc_3_in_axes3_y = six_r_a_o_3_in_axes3_y - v->six_r_g_in_axes3_y;
-    const real six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - v->six_r_g_in_axes1_y;
-    /* (six_r-f_3) inertia force of link 3 less its weight */
-    const real six_r_f_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
-    const real six_r_f_3_in_axes3_x = m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 + six_r_f_3_t)
-        + six_r_B_3_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
-        six_r_acc_3_in_axes3_x*m->six_r_link3_mass[i] +
-        six_r_B_3_in_axes3_xz*m->six_r_h_3_in_spec3_z[i];
-    const real six_r_f_3_in_axes3_y = six_r_acc_3_in_axes3_y*m->six_r_link3_mass[i] -
-        six_r_W_3_t_3*m->six_r_h_3_in_spec3_x[i] -
-        six_r_B_3_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] +
-        six_r_B_3_in_axes3_yz*m->six_r_h_3_in_spec3_z[i];
-    const real six_r_f_3_in_axes3_z = six_r_B_3_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] -
-        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t + six_r_f_3_t) +
-        six_r_acc_3_in_axes3_z*m->six_r_link3_mass[i] -
-        six_r_B_3_in_axes3_zx*m->six_r_h_3_in_spec3_y[i];
-    /* (six_r-acc_4) acceleration of the reference point of link 4, less gravity */
-    const real six_r_acc_4_in_axes4_x = v->six_r_c_4*v->six_r_g_in_axes3_x -
-        v->six_r_g_in_axes1_y*v->six_r_s_4 - six_r_a_o_4_in_axes3_x*v->six_r_c_4 +
-        six_r_a_o_4_in_axes3_z*v->six_r_s_4;
-    const real six_r_acc_4_in_axes4_y = six_r_a_o_4_in_axes3_x*v->six_r_s_4 -
-        v->six_r_c_4*v->six_r_g_in_axes1_y - v->six_r_g_in_axes3_x*v->six_r_s_4 +
-        six_r_a_o_4_in_axes3_z*v->six_r_c_4;
-    const real six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_y - v->six_r_g_in_axes3_y;
-    /* (six_r-f_4) inertia force of link 4 less its weight */
-    const real six_r_f_4_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
-    const real six_r_f_4_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
-    const real six_r_f_4_in_axes4_x = six_r_B_4_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] -
-        m->six_r_h_4_in_spec4_y[i]*(six_r_bias_t_10 + six_r_f_4_t_2) +
-        six_r_B_4_in_axes4_xz*m->six_r_h_4_in_spec4_x[i] +
-        six_r_acc_4_in_axes4_x*m->six_r_link4_mass[i];
-    const real six_r_f_4_in_axes4_y = six_r_B_4_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] -
-        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_t + six_r_f_4_t_2) +
-        six_r_B_4_in_axes4_yz*m->six_r_h_4_in_spec4_x[i] +
-        six_r_acc_4_in_axes4_y*m->six_r_link4_mass[i];
-    const real six_r_f_4_in_axes4_z = six_r_acc_4_in_axes4_z*m->six_r_link4_mass[i] -
-        m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t_10 + six_r_f_4_t) +
-        six_r_B_4_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
-        six_r_B_4_in_axes4_zy*m->six_r_h_4_in_spec4_z[i];
-    const real six_r_f_4_in_axes3_x = six_r_f_4_in_axes4_y*v->six_r_s_4 -
-        v->six_r_c_4*six_r_f_4_in_axes4_x;
-    const real six_r_f_4_in_axes3_z = v->six_r_c_4*six_r_f_4_in_axes4_y +
-        six_r_f_4_in_axes4_x*v->six_r_s_4;
-    /* (six_r-acc_5) acceleration of the reference point of link 5, less gravity */
-    const real six_r_acc_5_in_axes5_x = six_r_S_ddot_in_axes5_x -
-        v->axis_x_six_r_axes5_x*m->gravity_x - v->axis_x_six_r_axes5_y*m->gravity_y -
-        v->axis_x_six_r_axes5_z*m->gravity_z;
-    const real six_r_acc_5_in_axes5_y = six_r_S_ddot_in_axes5_y -
-        v->axis_y_six_r_axes5_x*m->gravity_x - v->axis_y_six_r_axes5_y*m->gravity_y -
-        v->axis_y_six_r_axes5_z*m->gravity_z;
-    const real six_r_acc_5_in_axes5_z = six_r_S_ddot_in_axes5_z -
-        v->axis_z_six_r_axes5_x*m->gravity_x - v->axis_z_six_r_axes5_y*m->gravity_y -
-        v->axis_z_six_r_axes5_z*m->gravity_z;
-    /* (six_r-mu_5) inertia moment of the links that turn with link 5, about their reference points */
-    const real six_r_mu_5_in_axes5_x = six_r_acc_5_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
-        six_r_acc_5_in_axes5_y*m->six_r_h_5_in_spec5_z[i] +
-        m->six_r_J_5_in_spec5_yz[i]*(six_r_W_5_t - six_r_W_5_t_2) +
-        six_r_B_5_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
-        six_r_B_5_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] -
-        six_r_B_5_in_axes5_yz*m->six_r_Sigma_5_in_axes5_zz[i] -
-        six_r_B_5_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i];
-    const real six_r_mu_5_in_axes5_y = six_r_acc_5_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
-        six_r_acc_5_in_axes5_z*m->six_r_h_5_in_spec5_x[i] -
-        m->six_r_J_5_in_spec5_xz[i]*(six_r_bias_t_11 - six_r_W_5_t_2) -
-        six_r_B_5_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] +
-        six_r_B_5_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
-        six_r_B_5_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] -
-        six_r_B_5_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i];
-    const real six_r_mu_5_in_axes5_z = six_r_acc_5_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
-        six_r_acc_5_in_axes5_x*m->six_r_h_5_in_spec5_y[i] +
-        m->six_r_J_5_in_spec5_xy[i]*(six_r_bias_t_11 - six_r_W_5_t) +
-        six_r_B_5_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] -
-        six_r_B_5_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] +
-        six_r_B_5_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] -
-        six_r_B_5_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i];
-    /* (six_r-mu_4) inertia moment of the links that turn with link 4, about their reference points */
-    const real six_r_mu_4_in_axes4_x = m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t_10 -
-        six_r_f_4_t_2) + six_r_acc_4_in_axes4_z*m->six_r_h_4_in_spec4_z[i] +
-        six_r_B_4_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
-        six_r_B_4_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] -
-        six_r_B_4_in_axes4_yz*m->six_r_Sigma_4_in_axes4_zz[i] -
-        six_r_B_4_in_axes4_zx*m->six_r_J_4_in_spec4_yz[i] -
-        six_r_acc_4_in_axes4_y*m->six_r_h_4_in_spec4_x[i];
-    const real six_r_mu_4_in_axes4_y = six_r_B_4_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] -
-        m->six_r_J_4_in_spec4_xy[i]*(six_r_f_4_t - six_r_f_4_t_2) -
-        six_r_acc_4_in_axes4_z*m->six_r_h_4_in_spec4_y[i] +
-        six_r_B_4_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] -
-        six_r_B_4_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
-        six_r_B_4_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] +
-        six_r_acc_4_in_axes4_x*m->six_r_h_4_in_spec4_x[i];
-    const real six_r_mu_4_in_axes4_z = m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_t -
-        six_r_bias_t_10) + six_r_B_4_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
-        six_r_B_4_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] -
-        six_r_B_4_in_axes4_xy*m->six_r_Sigma_4_in_axes4_yy[i] -
-        six_r_B_4_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] +
-        six_r_acc_4_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
-        six_r_acc_4_in_axes4_x*m->six_r_h_4_in_spec4_z[i];
-    /* (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection
-       point left out */
-    const real six_r_N_4_in_axes4_x = six_r_mu_4_in_axes4_x +
-        v->six_r_c_5*six_r_mu_5_in_axes5_y + six_r_mu_5_in_axes5_x*v->six_r_s_5;
-    const real six_r_N_4_in_axes4_y = six_r_mu_4_in_axes4_y + six_r_mu_5_in_axes5_z;
-    const real six_r_N_4_in_axes4_z = v->six_r_c_5*six_r_mu_5_in_axes5_x -
-        six_r_mu_5_in_axes5_y*v->six_r_s_5 + six_r_mu_4_in_axes4_z;
-    /* (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-    const real six_r_mu_3_in_axes3_x = m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_t -
-        six_r_W_3_t_2) - six_r_B_3_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
-        six_r_acc_3_in_axes3_y*m->six_r_h_3_in_spec3_z[i] +
-        six_r_B_3_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
-        six_r_B_3_in_axes3_zy*m->six_r_Sigma_3_in_axes3_yy[i] +
-        six_r_acc_3_in_axes3_z*m->six_r_h_3_in_spec3_x[i] -
-        six_r_B_3_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i];
-    const real six_r_mu_3_in_axes3_y = m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t -
-        six_r_W_3_t_2) - six_r_B_3_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] +
-        six_r_acc_3_in_axes3_x*m->six_r_h_3_in_spec3_z[i] +
-        six_r_B_3_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
-        six_r_acc_3_in_axes3_z*m->six_r_h_3_in_spec3_y[i] -
-        six_r_B_3_in_axes3_zx*m->six_r_Sigma_3_in_axes3_xx[i] -
-        six_r_B_3_in_axes3_zy*m->six_r_J_3_in_spec3_xy[i];
-    const real six_r_mu_3_in_axes3_z = six_r_B_3_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] -
-        m->six_r_J_3_in_spec3_xy[i]*(six_r_W_3_t - six_r_f_3_t) -
-        six_r_B_3_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
-        six_r_acc_3_in_axes3_x*m->six_r_h_3_in_spec3_x[i] -
-        six_r_acc_3_in_axes3_y*m->six_r_h_3_in_spec3_y[i] +
-        six_r_B_3_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
-        six_r_B_3_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i];
-    /* (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection
-       point left out */
-    const real six_r_N_3_in_axes3_x = six_r_mu_3_in_axes3_x +
-        six_r_f_4_in_axes3_z*m->six_r_joint4_offset_x[i] + six_r_N_4_in_axes4_y*v->six_r_s_4 -
-        six_r_N_4_in_axes4_x*v->six_r_c_4;
-    const real six_r_N_3_in_axes3_y = six_r_mu_3_in_axes3_y + six_r_N_4_in_axes4_z;
-    const real six_r_N_3_in_axes3_z = six_r_mu_3_in_axes3_z -
-        six_r_f_4_in_axes3_x*m->six_r_joint4_offset_x[i] + six_r_N_4_in_axes4_y*v->six_r_c_4 +
-        six_r_N_4_in_axes4_x*v->six_r_s_4;
-    /* (six_r-T_3) inertia force of the links from 3 outwards, the last link left out */
-    const real six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes3_x;
-    const real six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes4_z;
-    const real six_r_T_3_in_axes3_z = six_r_f_3_in_axes3_z + six_r_f_4_in_axes3_z;
-    /* (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real six_r_mu_2_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
-    const real six_r_mu_2_in_axes2_x = v->six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i] -
-        v->six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i] +
-        m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_t - six_r_a_o_3_t_2) +
-        six_r_B_2_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] -
-        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_t +
-        six_r_B_2_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] -
-        six_r_B_2_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i];
-    const real six_r_mu_2_in_axes2_y = v->six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_x[i] -
-        v->six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_z[i] -
-        m->six_r_J_2_in_spec2_xz[i]*(six_r_mu_2_t - six_r_a_o_3_t_2) -
-        six_r_B_2_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] +
-        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_in_axes2_y +
-        six_r_B_2_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] -
-        six_r_B_2_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i];
-    const real six_r_mu_2_in_axes2_z = v->six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_y[i] -
-        v->six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_x[i] +
-        m->six_r_J_2_in_spec2_xy[i]*(six_r_mu_2_t - six_r_a_o_3_t) +
-        six_r_B_2_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] -
-        six_r_B_2_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] +
-        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_in_axes2_y -
-        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_t;
-    /* (six_r-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
-       point left out */
-    const real six_r_N_2_in_axes2_x = six_r_mu_2_in_axes2_x +
-        six_r_N_3_in_axes3_x*v->six_r_s_3 + six_r_N_3_in_axes3_y*v->six_r_c_3;
-    const real six_r_N_2_in_axes2_y = six_r_mu_2_in_axes2_y -
-        six_r_T_3_in_axes3_z*m->six_r_joint3_offset_x[i] + six_r_N_3_in_axes3_y*v->six_r_s_3 -
-        six_r_N_3_in_axes3_x*v->six_r_c_3;
-    const real six_r_N_2_in_axes2_z = six_r_mu_2_in_axes2_z -
-        m->six_r_joint3_offset_x[i]*(six_r_T_3_in_axes3_x*v->six_r_c_3 -
-        six_r_T_3_in_axes3_y*v->six_r_s_3) + six_r_N_3_in_axes3_z;
-    /* (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real six_r_mu_1_in_axes1_z = v->six_r_g_in_axes1_x*m->six_r_h_1_in_spec1_z[i] -
-        v->six_r_g_in_axes1_y*m->six_r_h_1_in_spec1_y[i] -
-        m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_t_5;
-    /* (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
-       point left out */
-    const real six_r_N_1_in_axes1_z = six_r_mu_1_in_axes1_z +
-        six_r_N_2_in_axes2_x*v->six_r_c_2 - six_r_N_2_in_axes2_y*v->six_r_s_2;
-    /* (six_r-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
-       all degrees of freedom */
-    const real six_r_G_m1_t = v->inv_six_r_w_1_t_12*six_r_mu_5_in_axes5_z;
-    const real six_r_G_m1_t_2 = v->inv_six_r_w_1_t_28*(six_r_G_m1_t*v->six_r_w_1_t_15 -
-        six_r_N_4_in_axes4_z);
-    const real six_r_G_m1_t_3 = v->inv_six_r_w_1_t_49*(six_r_G_m1_t*v->six_r_w_1_t_18 +
-        six_r_G_m1_t_2*v->six_r_w_1_t_33 - six_r_N_1_in_axes1_z);
-    const real six_r_G_m1_t_4 = v->inv_six_r_w_1_t_67*(six_r_G_m1_t*v->six_r_w_1_t_22 +
-        six_r_G_m1_t_2*v->six_r_w_1_t_39 - six_r_N_2_in_axes2_z -
-        six_r_G_m1_t_3*v->six_r_w_1_t_55);
-    const real six_r_G_m1_t_5 = v->inv_six_r_w_1_t_79*(six_r_G_m1_t*v->six_r_w_1_t_25 +
-        six_r_N_3_in_axes3_z - six_r_G_m1_t_2*v->six_r_w_1_t_44 +
-        six_r_G_m1_t_3*v->six_r_w_1_t_61 + six_r_G_m1_t_4*v->six_r_w_1_t_73);
-    const real six_r_G_m1_t_6 = m->six_r_size[i]*(six_r_G_m1_t_2*v->six_r_w_1_t_31 +
-        six_r_G_m1_t_3*v->six_r_w_1_t_53 + six_r_G_m1_t_4*v->six_r_w_1_t_71 -
-        six_r_G_m1_t_5*six_r_m1_w_2_t);
-    /* (six_r-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
-       all degrees of freedom */
-    const real six_r_G_m2_t = m->six_r_size[i]*(six_r_G_m1_t_2*v->six_r_w_1_t_32 -
-        six_r_G_m1_t*v->six_r_w_1_t_14 + six_r_G_m1_t_3*v->six_r_w_1_t_54 +
-        six_r_G_m1_t_4*v->six_r_w_1_t_72 - six_r_G_m1_t_5*six_r_m2_w_2_t);
-    /* (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
-    const real six_r_G_m_in_axes5_x = six_r_G_m1_t_6*v->six_r_n_m2_in_axes5_z;
-    const real six_r_G_m_in_axes5_y = six_r_G_m2_t*v->six_r_end_p1_in_axes5_z -
-        six_r_G_m1_t_6*v->six_r_n_m1_in_axes5_y;
-    /* (six_r-c) leg force on the platform without actuation and without the mass at the connection
-       point */
-    const real six_r_c_in_axes5_x = six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
-        six_r_B_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] + six_r_G_m1_t_3*v->six_r_w_1_t_50 +
-        six_r_G_m1_t_4*v->six_r_w_1_t_68 - six_r_G_m1_t_5*six_r_w_2_t;
-    const real six_r_c_in_axes5_y = m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 +
-        six_r_bias_t_11) - six_r_B_5_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_t*v->six_r_w_1_t_13 -
-        six_r_G_m1_t_2*v->six_r_w_1_t_29 - six_r_G_m1_t_3*v->six_r_w_1_t_51 -
-        six_r_G_m1_t_4*v->six_r_w_1_t_69 + six_r_G_m1_t_5*six_r_w_2_t_2;
-    const real six_r_c_in_axes5_z = m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t + six_r_bias_t_11)
-        - six_r_B_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] + six_r_G_m1_t_2*v->six_r_w_1_t_30 +
-        six_r_G_m1_t_3*v->six_r_w_1_t_52 + six_r_G_m1_t_4*v->six_r_w_1_t_70 -
-        six_r_G_m1_t_5*six_r_w_2_t_3;
-    /* (six_r-c_m) moment of the leg on the platform without actuation */
-    const real six_r_c_m_in_axes5_z = six_r_G_m2_t*v->six_r_n_m2_in_axes5_z;
-    v->six_r_w_2_x = six_r_w_2_x;
-    v->six_r_w_2_y = six_r_w_2_y;
-    v->six_r_w_2_z = six_r_w_2_z;
-    v->six_r_o_2_t = six_r_o_2_t;
-    v->six_r_o_2_in_axes5_z = six_r_o_2_in_axes5_z;
-    v->six_r_o_2_in_axes5_y = six_r_o_2_in_axes5_y;
-    v->six_r_acc_5_in_axes5_x = six_r_acc_5_in_axes5_x;
-    v->six_r_acc_5_in_axes5_y = six_r_acc_5_in_axes5_y;
-    v->six_r_acc_5_in_axes5_z = six_r_acc_5_in_axes5_z;
-    v->six_r_G_m_in_axes5_x = six_r_G_m_in_axes5_x;
-    v->six_r_G_m_in_axes5_y = six_r_G_m_in_axes5_y;
-    v->six_r_c_in_axes5_x = six_r_c_in_axes5_x;
-    v->six_r_c_in_axes5_y = six_r_c_in_axes5_y;
-    v->six_r_c_in_axes5_z = six_r_c_in_axes5_z;
-    v->six_r_c_m_in_axes5_z = six_r_c_m_in_axes5_z;
-}
-
-/* ---- closure_six_r ---- */
-INLINE void closure_six_r_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, verdict *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void closure_six_r_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k,
-    size_t count, const real *s, const real *X, const real *joints, real *o)
-{
-    values_six_r v;
-    stage_six_r_X(m, w, i, j, s, &v);
-    stage_six_r_q(m, w, i, j, joints, &v);
-    stage_six_r_X_q(m, i, &v);
-    /* (six_r-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real six_r_S_x = t_x - m->six_r_base_point_x[i] + R_xy*m->six_r_platform_point_y[i]
-        + R_xz*m->six_r_platform_point_z[i] + R_xx*m->six_r_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real six_r_S_y = t_y - m->six_r_base_point_y[i] + R_yx*m->six_r_platform_point_x[i]
-        + R_yz*m->six_r_platform_point_z[i] + R_yy*m->six_r_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real six_r_S_z = t_z - m->six_r_base_point_z[i] + R_zx*m->six_r_platform_point_x[i]
-        + R_zy*m->six_r_platform_point_y[i] + R_zz*m->six_r_platform_point_z[i];
-    /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real six_r_end_p1_in_axes5_y = v.six_r_c_5*v.six_r_n_m1_t_10 -
-        v.six_r_n_m1_t_9*v.six_r_s_5;
-    const real six_r_n_m1_t_11 = v.six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
-        v.six_r_e_1_in_axes5_y*v.six_r_n_m1_in_axes5_y;
-    const real six_r_n_m1_t_12 = v.six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
-        v.six_r_e_2_in_axes5_y*v.six_r_n_m1_in_axes5_y;
-    const real six_r_n_m1_in_axes4_z = -v.six_r_c_5*six_r_end_p1_in_axes5_y -
-        v.six_r_n_m1_in_axes5_y*v.six_r_s_5;
-    /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-    const real six_r_n_m2_t = v.six_r_e_1_in_axes5_y*v.six_r_end_p1_in_axes5_z -
-        v.six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
-    const real six_r_n_m2_t_2 = v.six_r_e_2_in_axes5_y*v.six_r_end_p1_in_axes5_z -
-        v.six_r_c_4*six_r_end_p1_in_axes5_y;
-    const real six_r_n_m2_in_axes4_z = v.six_r_end_p1_in_axes5_z*v.six_r_s_5;
-    /* (six_r-gap) from the connection point as the links reach it to the platform's */
-    const real six_r_gap_t = six_r_S_x*m->six_r_base_frame_xy[i] +
-        six_r_S_y*m->six_r_base_frame_yy[i] + six_r_S_z*m->six_r_base_frame_zy[i];
-    const real six_r_gap_t_2 = six_r_S_x*m->six_r_base_frame_xz[i] +
-        six_r_S_y*m->six_r_base_frame_yz[i] + six_r_S_z*m->six_r_base_frame_zz[i];
-    const real six_r_gap_t_3 = six_r_S_x*m->six_r_base_frame_xx[i] +
-        six_r_S_y*m->six_r_base_frame_yx[i] + six_r_S_z*m->six_r_base_frame_zx[i];
-    const real six_r_gap_t_4 = v.six_r_c_1*six_r_gap_t + six_r_gap_t_2*v.six_r_s_1;
-    const real six_r_gap_t_5 = v.six_r_c_1*six_r_gap_t_2 - six_r_gap_t*v.six_r_s_1;
-    const real six_r_gap_t_6 = v.six_r_c_2*six_r_gap_t_3 + six_r_gap_t_4*v.six_r_s_2;
-    const real six_r_gap_t_7 = v.six_r_c_2*six_r_gap_t_4 - six_r_gap_t_3*v.six_r_s_2;
-    const real six_r_gap_t_8 = six_r_gap_t_6*v.six_r_s_3 - v.six_r_c_3*six_r_gap_t_7;
-    const real six_r_gap_t_9 = v.six_r_c_3*six_r_gap_t_6 + six_r_gap_t_7*v.six_r_s_3;
-    const real six_r_gap_t_10 = six_r_gap_t_5*v.six_r_s_4 - v.six_r_c_4*six_r_gap_t_8;
-    const real six_r_gap_in_axes5_x = v.six_r_c_5*six_r_gap_t_9 + six_r_gap_t_10*v.six_r_s_5 -
-        v.six_r_r_1_in_axes5_x;
-    const real six_r_gap_in_axes5_y = v.six_r_c_5*six_r_gap_t_10 - six_r_gap_t_9*v.six_r_s_5 -
-        v.six_r_r_1_in_axes5_y;
-    const real six_r_gap_in_axes5_z = v.six_r_c_4*six_r_gap_t_5 + six_r_gap_t_8*v.six_r_s_4 -
-        v.six_r_r_1_in_axes5_z;
-    /* (six_r-gap) */
-    o[0*count + k] = six_r_gap_in_axes5_x;
-    o[1*count + k] = six_r_gap_in_axes5_y;
-    o[2*count + k] = six_r_gap_in_axes5_z;
-    /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-    o[3*count + k] = v.six_r_v_1_in_axes5_x;
-    o[4*count + k] = v.six_r_v_1_in_axes5_y;
-    o[5*count + k] = v.six_r_v_1_in_axes5_z;
-    /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-    o[6*count + k] = v.six_r_v_2_in_axes5_x;
-    o[7*count + k] = v.six_r_v_2_in_axes5_y;
-    o[8*count + k] = v.six_r_v_2_in_axes5_z;
-    /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-    o[9*count + k] = v.six_r_v_3_in_axes5_x;
-    o[10*count + k] = v.six_r_v_3_in_axes5_y;
-    o[11*count + k] = v.six_r_v_3_in_axes5_z;
-    /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-    o[12*count + k] = v.six_r_v_4_in_axes5_z;
-    /* (six_r-v_5) velocity of the connection point per rate of joint 5 */
-    o[13*count + k] = m->six_r_platform_joint_offset_x[i];
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    o[14*count + k] = -v.six_r_end_p1_in_axes5_z;
-    /* (six_r-n_m1) */
-    o[15*count + k] = -six_r_n_m1_t_11;
-    o[16*count + k] = -six_r_n_m1_t_12;
-    o[17*count + k] = -six_r_n_m1_t_12;
-    o[18*count + k] = six_r_n_m1_in_axes4_z;
-    /* (legs_size) */
-    o[19*count + k] = -v.six_r_n_m1_in_axes5_y;
-    /* (six_r-n_m2) */
-    o[20*count + k] = -six_r_n_m2_t;
-    o[21*count + k] = -six_r_n_m2_t_2;
-    o[22*count + k] = -six_r_n_m2_t_2;
-    o[23*count + k] = six_r_n_m2_in_axes4_z;
-    o[24*count + k] = six_r_end_p1_in_axes5_y;
-}
-
-INLINE void closure_six_r_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *gap_six_r, real *jacobian_six_r)
-{
-    gap_six_r[5*i*w + k] = o[0*count + at];
-    gap_six_r[(5*i + 1)*w + k] = o[1*count + at];
-    gap_six_r[(5*i + 2)*w + k] = o[2*count + at];
-    jacobian_six_r[25*i*w + k] = o[3*count + at];
-    jacobian_six_r[(25*i + 5)*w + k] = o[4*count + at];
-    jacobian_six_r[(25*i + 10)*w + k] = o[5*count + at];
-    jacobian_six_r[(25*i + 1)*w + k] = o[6*count + at];
-    jacobian_six_r[(25*i + 6)*w + k] = o[7*count + at];
-    jacobian_six_r[(25*i + 11)*w + k] = o[8*count + at];
-    jacobian_six_r[(25*i + 2)*w + k] = o[9*count + at];
-    jacobian_six_r[(25*i + 7)*w + k] = o[10*count + at];
-    jacobian_six_r[(25*i + 12)*w + k] = o[11*count + at];
-    jacobian_six_r[(25*i + 13)*w + k] = o[12*count + at];
-    jacobian_six_r[(25*i + 9)*w + k] = o[13*count + at];
-    gap_six_r[(5*i + 3)*w + k] = o[14*count + at];
-    jacobian_six_r[(25*i + 15)*w + k] = o[15*count + at];
-    jacobian_six_r[(25*i + 16)*w + k] = o[16*count + at];
-    jacobian_six_r[(25*i + 17)*w + k] = o[17*count + at];
-    jacobian_six_r[(25*i + 18)*w + k] = o[18*count + at];
-    gap_six_r[(5*i + 4)*w + k] = o[19*count + at];
-    jacobian_six_r[(25*i + 20)*w + k] = o[20*count + at];
-    jacobian_six_r[(25*i + 21)*w + k] = o[21*count + at];
-    jacobian_six_r[(25*i + 22)*w + k] = o[22*count + at];
-    jacobian_six_r[(25*i + 23)*w + k] = o[23*count + at];
-    jacobian_six_r[(25*i + 24)*w + k] = o[24*count + at];
-}
-
-INLINE void closure_six_r_run(const prepared *m, const real *X, const real *joints, real
-    *gap_six_r, real *jacobian_six_r, verdict *t)
-{
-    real s[9] = {0};
-    real o_six_r[25*LEGS(LEGS_OF_six_r)] = {0};
-    clear(jacobian_six_r, 150);
-    values v;
-    closure_six_r_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
-        closure_six_r_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, X, joints, o_six_r);
-    }
-    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
-        closure_six_r_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, gap_six_r, jacobian_six_r);
-    }
-}
-
-/* Close the 6 legs of type six_r from the guess in q, by at most 60 steps of at most 0.5;
-   returns whether the iteration converged on home's branch. */
-static int close_six_r(const prepared *m, const real *X, real *q)
-{
-    static const size_t places[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29};
-    static const size_t rows[] = {0, 1, 2, 3, 4};
-    static const int home[] = {1, 1, 1, 1, 1, 1};  /* signs of the determinants */
-    enum { LEGS = 6, ROWS = 5, N = 5 };
-    enum { GAPS = LEGS*ROWS, SLOPES = GAPS*N, STEPS = LEGS*N };
-    real gap[GAPS] = {0}, jacobian[SLOPES] = {0}, step[STEPS], size = 1;
-    for (int steps = 0; steps < 60 && size > STEADY; ++steps) {
-        verdict why, *const t = &why;
-        start(1, t);
-        closure_six_r_run(m, X, q, gap, jacobian, t);
-        check(GAPS, 1, gap, t->overflow);
-        check(SLOPES, 1, jacobian, t->overflow);
-        if (judge(t) != OK) {
-            return 0;
-        }
-        size = newton_step(LEGS, ROWS, N, gap, jacobian, step);
-        for (size_t i = 0; i < STEPS; ++i) {
-            q[places[i]] += size > R(0.5) ? R(0.5)/size*step[i] : step[i];
-        }
-    }
-    for (size_t leg = 0; leg < LEGS && size <= STEADY; ++leg) {
-        if (side(N, rows, jacobian + leg*ROWS*N) != home[leg]) {
-            return 0;
-        }
-    }
-    return size <= STEADY;
-}
-
-/* The displacements at w states side by side, from q0 (state by state, or NULL: from home);
-   revolute ones in (-pi, pi]. */
-static void close_loops(const prepared *m, size_t w, const real *X, const real *q0, real *joints,
-        verdict *t)
-{
-    static const size_t turning[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29};
-    for (size_t k = 0; k < w; ++k) {
-        real x[NQ], q[NJ];
-        for (size_t e = 0; e < NQ; ++e) {
-            x[e] = X[e*w + k];
-        }
-        memcpy(q, q0 ? q0 + NJ*k : hexapod_6x6r_HOME_Q, sizeof q);
-        check(NJ, 1, q, t->invalid + k);
-        if (!(t->invalid[k] > 0)) {
-            t->diverged[k] += UNLESS(close_six_r(m, x, q));
-        }
-        wrap_turns(30, 1, turning, q);
-        for (size_t e = 0; e < NJ; ++e) {
-            joints[e*w + k] = q[e];
-        }
-    }
-}
-
-
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
-    *s)
-{
-    stage_V_X(w, k, V, v);
-    stage_M_dynamics(m, v);
-    stage_Z_dynamics(m, w, k, V, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
-    s[18*w + k] = v->Z_p_x;
-    s[19*w + k] = v->Z_p_y;
-    s[20*w + k] = v->Z_p_z;
-    s[21*w + k] = v->Z_q_x;
-    s[22*w + k] = v->Z_q_y;
-    s[23*w + k] = v->Z_q_z;
-}
-
-INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
-    count, int add, const real *s, const real *V, const real *joints, real *terms, real *o)
-{
-    values_six_r v;
-    stage_six_r_X(m, w, i, j, s, &v);
-    stage_six_r_q(m, w, i, j, joints, &v);
-    stage_six_r_V_X(w, j, V, &v);
-    stage_six_r_X_q(m, i, &v);
-    stage_six_r_M_dynamics(m, w, i, j, joints, &v);
-    stage_six_r_Z_dynamics(m, w, i, j, V, &v);
-    /* (six_r-S_dot) velocity of the connection point */
-    const real six_r_S_dot_t = v.six_r_c_3*v.six_r_h_4_t;
-    const real six_r_S_dot_t_2 = v.six_r_h_4_t*v.six_r_s_3;
-    const real six_r_S_dot_t_3 = six_r_S_dot_t*v.six_r_s_2 + six_r_S_dot_t_2*v.six_r_c_2;
-    const real six_r_S_dot_t_4 = six_r_S_dot_t_2*v.six_r_s_2 - six_r_S_dot_t*v.six_r_c_2;
-    const real six_r_S_dot_t_5 = six_r_S_dot_t_4*v.six_r_c_1 -
-        v.six_r_e_2_in_axes5_z*v.six_r_s_1;
-    const real six_r_S_dot_t_6 = v.six_r_c_1*v.six_r_e_2_in_axes5_z +
-        six_r_S_dot_t_4*v.six_r_s_1;
-    const real axis_z_six_r_axes5_x = six_r_S_dot_t_3*m->six_r_base_frame_xx[i] +
-        six_r_S_dot_t_5*m->six_r_base_frame_xy[i] + six_r_S_dot_t_6*m->six_r_base_frame_xz[i];
-    const real axis_z_six_r_axes5_y = six_r_S_dot_t_3*m->six_r_base_frame_yx[i] +
-        six_r_S_dot_t_5*m->six_r_base_frame_yy[i] + six_r_S_dot_t_6*m->six_r_base_frame_yz[i];
-    const real axis_z_six_r_axes5_z = six_r_S_dot_t_3*m->six_r_base_frame_zx[i] +
-        six_r_S_dot_t_5*m->six_r_base_frame_zy[i] + six_r_S_dot_t_6*m->six_r_base_frame_zz[i];
-    const real six_r_S_dot_t_7 = v.six_r_e_2_in_axes5_z*v.six_r_e_4_in_axes5_x;
-    const real six_r_S_dot_t_8 = v.six_r_J_5_t*v.six_r_s_3 - six_r_S_dot_t_7*v.six_r_c_3;
-    const real six_r_S_dot_t_9 = -v.six_r_J_5_t*v.six_r_c_3 - six_r_S_dot_t_7*v.six_r_s_3;
-    const real six_r_S_dot_t_10 = six_r_S_dot_t_8*v.six_r_s_2 + six_r_S_dot_t_9*v.six_r_c_2;
-    const real six_r_S_dot_t_11 = six_r_S_dot_t_9*v.six_r_s_2 - six_r_S_dot_t_8*v.six_r_c_2;
-    const real six_r_S_dot_t_12 = six_r_S_dot_t_11*v.six_r_c_1 -
-        v.six_r_e_2_in_axes5_y*v.six_r_s_1;
-    const real six_r_S_dot_t_13 = v.six_r_c_1*v.six_r_e_2_in_axes5_y +
-        six_r_S_dot_t_11*v.six_r_s_1;
-    const real axis_y_six_r_axes5_x = six_r_S_dot_t_10*m->six_r_base_frame_xx[i] +
-        six_r_S_dot_t_12*m->six_r_base_frame_xy[i] +
-        six_r_S_dot_t_13*m->six_r_base_frame_xz[i];
-    const real axis_y_six_r_axes5_y = six_r_S_dot_t_10*m->six_r_base_frame_yx[i] +
-        six_r_S_dot_t_12*m->six_r_base_frame_yy[i] +
-        six_r_S_dot_t_13*m->six_r_base_frame_yz[i];
-    const real axis_y_six_r_axes5_z = six_r_S_dot_t_10*m->six_r_base_frame_zx[i] +
-        six_r_S_dot_t_12*m->six_r_base_frame_zy[i] +
-        six_r_S_dot_t_13*m->six_r_base_frame_zz[i];
-    const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
-        axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
-    const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
-        axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
-    const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
-        axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-    const real six_r_S_dot_in_axes5_x = axis_x_six_r_axes5_x*v.six_r_S_dot_x +
-        axis_x_six_r_axes5_y*v.six_r_S_dot_y + axis_x_six_r_axes5_z*v.six_r_S_dot_z;
-    const real six_r_S_dot_in_axes5_y = axis_y_six_r_axes5_x*v.six_r_S_dot_x +
-        axis_y_six_r_axes5_y*v.six_r_S_dot_y + axis_y_six_r_axes5_z*v.six_r_S_dot_z;
-    const real six_r_S_dot_in_axes5_z = axis_z_six_r_axes5_x*v.six_r_S_dot_x +
-        axis_z_six_r_axes5_y*v.six_r_S_dot_y + axis_z_six_r_axes5_z*v.six_r_S_dot_z;
-    /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real six_r_n_m1_t_10 = v.six_r_h_4_t*v.six_r_n_m1_t_5 -
-        v.six_r_e_2_in_axes5_z*v.six_r_n_m1_t_8;
-    const real six_r_n_m1_in_axes5_y = v.six_r_e_4_in_axes5_x*v.six_r_n_m1_t_9 +
-        v.six_r_J_5_t*six_r_n_m1_t_10;
-    const real six_r_end_p1_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_n_m1_t_10 -
-        v.six_r_J_5_t*v.six_r_n_m1_t_9;
-    const real six_r_n_m1_x = axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
-        axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y;
-    const real six_r_n_m1_y = axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
-        axis_x_six_r_axes5_y*six_r_end_p1_in_axes5_y;
-    const real six_r_n_m1_z = axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
-        axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y;
-    /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-    const real six_r_end_p1_in_axes5_z = v.six_r_e_2_in_axes5_z*v.six_r_n_m1_t_5 +
-        v.six_r_h_4_t*v.six_r_n_m1_t_8;
-    const real six_r_n_m2_x = axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
-        axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z;
-    const real six_r_n_m2_y = axis_z_six_r_axes5_y*six_r_end_p1_in_axes5_y -
-        axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z;
-    const real six_r_n_m2_z = axis_z_six_r_axes5_z*six_r_end_p1_in_axes5_y -
-        axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z;
-    /* (six_r-w_1) force part of reciprocal wrench 1 */
-    const real six_r_w_1_t = v.six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
-        v.six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-    const real six_r_w_1_t_2 = v.six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
-        v.six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-    const real six_r_w_1_t_3 = v.six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-        v.six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
-    const real six_r_w_1_t_4 = v.six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-        v.six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y;
-    const real six_r_w_1_t_5 = m->six_r_size[i]*six_r_w_1_t;
-    const real six_r_w_1_t_6 = m->six_r_size[i]*six_r_w_1_t_3;
-    const real six_r_w_1_t_7 = m->six_r_size[i]*six_r_w_1_t_2;
-    const real six_r_w_1_t_8 = m->six_r_size[i]*six_r_w_1_t_4;
-    const real six_r_w_1_t_9 = m->six_r_size[i]*(-v.six_r_J_5_t*six_r_n_m1_in_axes5_y -
-        v.six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y);
-    const real six_r_w_1_t_10 = v.six_r_J_5_t*six_r_end_p1_in_axes5_z*m->six_r_size[i];
-    const real six_r_w_1_t_11 = six_r_end_p1_in_axes5_y*m->six_r_size[i];
-    const real six_r_w_1_t_12 = root(m->six_r_size_t[i] + six_r_w_1_t_11*six_r_w_1_t_11);
-    const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
-    const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*m->six_r_platform_joint_offset_x[i];
-    const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
-    const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
-    const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
-    const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-    const real six_r_w_1_t_18 = v.six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
-        six_r_w_1_t_14*six_r_w_1_t_6;
-    const real six_r_w_1_t_19 = v.six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
-    const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
-    const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-    const real six_r_w_1_t_22 = v.six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-    const real six_r_w_1_t_23 = v.six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
-    const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-    const real six_r_w_1_t_25 = six_r_w_1_t_21 - v.six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-    const real six_r_w_1_t_26 = v.six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
-    const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-    const real six_r_w_1_t_28 = root(v.six_r_v_4_in_axes5_z*v.six_r_v_4_in_axes5_z +
-        six_r_w_1_t_9*six_r_w_1_t_9 + six_r_w_1_t_16*six_r_w_1_t_16 +
-        six_r_w_1_t_17*six_r_w_1_t_17);
-    const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
-    const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-    const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*v.six_r_v_4_in_axes5_z;
-    const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
-    const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
-    const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-        + six_r_w_1_t_31*six_r_w_1_t_5 - v.six_r_v_1_in_axes5_z*six_r_w_1_t_30;
-    const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-    const real six_r_w_1_t_35 = v.six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
-    const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
-    const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
-    const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-    const real six_r_w_1_t_39 = six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32
-        - v.six_r_v_2_in_axes5_z*six_r_w_1_t_30 + six_r_w_1_t_38;
-    const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-    const real six_r_w_1_t_41 = v.six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
-    const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
-    const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-    const real six_r_w_1_t_44 = six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32
-        - v.six_r_v_3_in_axes5_z*six_r_w_1_t_30 + six_r_w_1_t_38;
-    const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-    const real six_r_w_1_t_46 = v.six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
-    const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
-    const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-    const real six_r_w_1_t_49 = root(v.six_r_v_1_in_axes5_x*v.six_r_v_1_in_axes5_x +
-        six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
-        six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
-    const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-    const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*v.six_r_v_1_in_axes5_x;
-    const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
-    const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
-    const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
-    const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-    const real six_r_w_1_t_55 = v.six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
-        six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
-        six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-    const real six_r_w_1_t_56 = v.six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
-    const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
-    const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
-    const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
-    const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-    const real six_r_w_1_t_61 = v.six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
-        six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
-        six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-    const real six_r_w_1_t_62 = v.six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
-    const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
-    const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
-    const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
-    const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
-    const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
-        six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
-        six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
-    const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
-    const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
-    const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
-    const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
-    const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
-    const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
-    const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
-        + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-        six_r_w_1_t_66*six_r_w_1_t_72;
-    const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
-    const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
-    const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
-    const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
-    const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
-    const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
-        six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
-        six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
-    const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
-    const real six_r_w_1_t_80 = inv_six_r_w_1_t_79*six_r_w_1_t_74;
-    const real six_r_w_1_t_81 = inv_six_r_w_1_t_79*six_r_w_1_t_75;
-    const real six_r_w_1_t_82 = inv_six_r_w_1_t_79*six_r_w_1_t_76;
-    const real six_r_w_1_t_83 = inv_six_r_w_1_t_49*inv_six_r_w_1_t_67*six_r_w_1_t_55;
-    const real six_r_w_1_t_84 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_49*six_r_w_1_t_61 -
-        six_r_w_1_t_73*six_r_w_1_t_83);
-    const real six_r_w_1_in_axes5_x = inv_six_r_w_1_t_49*six_r_w_1_t_50 -
-        six_r_w_1_t_68*six_r_w_1_t_83 - six_r_w_1_t_80*six_r_w_1_t_84;
-    const real six_r_w_1_in_axes5_y = six_r_w_1_t_69*six_r_w_1_t_83 -
-        inv_six_r_w_1_t_49*six_r_w_1_t_51 + six_r_w_1_t_81*six_r_w_1_t_84;
-    const real six_r_w_1_in_axes5_z = inv_six_r_w_1_t_49*six_r_w_1_t_52 -
-        six_r_w_1_t_70*six_r_w_1_t_83 - six_r_w_1_t_82*six_r_w_1_t_84;
-    /* (six_r-m1_w_1) moment part 1 of reciprocal wrench 1 */
-    const real six_r_m1_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_77;
-    const real six_r_m1_w_1_t_2 = m->six_r_size[i]*(six_r_w_1_t_71*six_r_w_1_t_83 -
-        inv_six_r_w_1_t_49*six_r_w_1_t_53 + six_r_m1_w_1_t*six_r_w_1_t_84);
-    /* (six_r-m2_w_1) moment part 2 of reciprocal wrench 1 */
-    const real six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78;
-    const real six_r_m2_w_1_t_2 = m->six_r_size[i]*(six_r_w_1_t_72*six_r_w_1_t_83 -
-        inv_six_r_w_1_t_49*six_r_w_1_t_54 + six_r_m2_w_1_t*six_r_w_1_t_84);
-    /* (six_r-w_2) force part of reciprocal wrench 2 */
-    const real six_r_w_2_t = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
-    const real six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 -
-        six_r_w_1_t_80*six_r_w_2_t;
-    const real six_r_w_2_in_axes5_y = six_r_w_1_t_81*six_r_w_2_t -
-        inv_six_r_w_1_t_67*six_r_w_1_t_69;
-    const real six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 -
-        six_r_w_1_t_82*six_r_w_2_t;
-    const real six_r_w_2_x = axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x +
-        axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z;
-    const real six_r_w_2_y = axis_x_six_r_axes5_y*six_r_w_2_in_axes5_x +
-        axis_y_six_r_axes5_y*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_y*six_r_w_2_in_axes5_z;
-    const real six_r_w_2_z = axis_x_six_r_axes5_z*six_r_w_2_in_axes5_x +
-        axis_y_six_r_axes5_z*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z;
-    /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
-    const real six_r_m1_w_2 = m->six_r_size[i]*(inv_six_r_w_1_t_67*six_r_w_1_t_71 -
-        six_r_m1_w_1_t*six_r_w_2_t);
-    /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
-    const real six_r_m2_w_2 = m->six_r_size[i]*(inv_six_r_w_1_t_67*six_r_w_1_t_72 -
-        six_r_m2_w_1_t*six_r_w_2_t);
-    /* (six_r-w_3) force part of reciprocal wrench 3 */
-    const real six_r_w_3_in_axes5_x = inv_six_r_w_1_t_79*six_r_w_1_t_80;
-    const real six_r_w_3_t = inv_six_r_w_1_t_79*six_r_w_1_t_81;
-    const real six_r_w_3_in_axes5_z = inv_six_r_w_1_t_79*six_r_w_1_t_82;
-    /* (six_r-m1_w_3) moment part 1 of reciprocal wrench 3 */
-    const real six_r_m1_w_3 = inv_six_r_w_1_t_79*six_r_m1_w_1_t*m->six_r_size[i];
-    /* (six_r-m2_w_3) moment part 2 of reciprocal wrench 3 */
-    const real six_r_m2_w_3 = inv_six_r_w_1_t_79*six_r_m2_w_1_t*m->six_r_size[i];
-    /* (six_r-w_4) force part of reciprocal wrench 4 */
-    const real six_r_w_4_t = inv_six_r_w_1_t_28*inv_six_r_w_1_t_49*six_r_w_1_t_33;
-    const real six_r_w_4_t_2 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_28*six_r_w_1_t_39 -
-        six_r_w_1_t_55*six_r_w_4_t);
-    const real six_r_w_4_t_3 = inv_six_r_w_1_t_79*(six_r_w_1_t_61*six_r_w_4_t -
-        inv_six_r_w_1_t_28*six_r_w_1_t_44 + six_r_w_1_t_73*six_r_w_4_t_2);
-    const real six_r_w_4_in_axes5_x = six_r_w_1_t_50*six_r_w_4_t +
-        six_r_w_1_t_68*six_r_w_4_t_2 - six_r_w_1_t_80*six_r_w_4_t_3;
-    const real six_r_w_4_in_axes5_y = six_r_w_1_t_81*six_r_w_4_t_3 -
-        inv_six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_51*six_r_w_4_t -
-        six_r_w_1_t_69*six_r_w_4_t_2;
-    const real six_r_w_4_in_axes5_z = inv_six_r_w_1_t_28*six_r_w_1_t_30 +
-        six_r_w_1_t_52*six_r_w_4_t + six_r_w_1_t_70*six_r_w_4_t_2 -
-        six_r_w_1_t_82*six_r_w_4_t_3;
-    /* (six_r-m1_w_4) moment part 1 of reciprocal wrench 4 */
-    const real six_r_m1_w_4 = m->six_r_size[i]*(inv_six_r_w_1_t_28*six_r_w_1_t_31 +
-        six_r_w_1_t_53*six_r_w_4_t + six_r_w_1_t_71*six_r_w_4_t_2 -
-        six_r_m1_w_1_t*six_r_w_4_t_3);
-    /* (six_r-m2_w_4) moment part 2 of reciprocal wrench 4 */
-    const real six_r_m2_w_4 = m->six_r_size[i]*(inv_six_r_w_1_t_28*six_r_w_1_t_32 +
-        six_r_w_1_t_54*six_r_w_4_t + six_r_w_1_t_72*six_r_w_4_t_2 -
-        six_r_m2_w_1_t*six_r_w_4_t_3);
-    /* (six_r-w_5) force part of reciprocal wrench 5 */
-    const real six_r_w_5_t = inv_six_r_w_1_t_12*inv_six_r_w_1_t_28*six_r_w_1_t_15;
-    const real six_r_w_5_t_2 = inv_six_r_w_1_t_49*(inv_six_r_w_1_t_12*six_r_w_1_t_18 +
-        six_r_w_1_t_33*six_r_w_5_t);
-    const real six_r_w_5_t_3 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_12*six_r_w_1_t_22 +
-        six_r_w_1_t_39*six_r_w_5_t - six_r_w_1_t_55*six_r_w_5_t_2);
-    const real six_r_w_5_t_4 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_12*six_r_w_1_t_25 -
-        six_r_w_1_t_44*six_r_w_5_t + six_r_w_1_t_61*six_r_w_5_t_2 +
-        six_r_w_1_t_73*six_r_w_5_t_3);
-    const real six_r_w_5_t_5 = six_r_w_1_t_50*six_r_w_5_t_2 + six_r_w_1_t_68*six_r_w_5_t_3 -
-        six_r_w_1_t_80*six_r_w_5_t_4;
-    const real six_r_w_5_in_axes5_y = inv_six_r_w_1_t_12*six_r_w_1_t_13 +
-        six_r_w_1_t_29*six_r_w_5_t + six_r_w_1_t_51*six_r_w_5_t_2 +
-        six_r_w_1_t_69*six_r_w_5_t_3 - six_r_w_1_t_81*six_r_w_5_t_4;
-    const real six_r_w_5_in_axes5_z = six_r_w_1_t_82*six_r_w_5_t_4 -
-        six_r_w_1_t_30*six_r_w_5_t - six_r_w_1_t_52*six_r_w_5_t_2 -
-        six_r_w_1_t_70*six_r_w_5_t_3;
-    /* (six_r-m1_w_5) moment part 1 of reciprocal wrench 5 */
-    const real six_r_m1_w_5_t = m->six_r_size[i]*(six_r_w_1_t_31*six_r_w_5_t +
-        six_r_w_1_t_53*six_r_w_5_t_2 + six_r_w_1_t_71*six_r_w_5_t_3 -
-        six_r_m1_w_1_t*six_r_w_5_t_4);
-    /* (six_r-m2_w_5) moment part 2 of reciprocal wrench 5 */
-    const real six_r_m2_w_5_t = m->six_r_size[i]*(six_r_w_1_t_32*six_r_w_5_t -
-        inv_six_r_w_1_t_12*six_r_w_1_t_14 + six_r_w_1_t_54*six_r_w_5_t_2 +
-        six_r_w_1_t_72*six_r_w_5_t_3 - six_r_m2_w_1_t*six_r_w_5_t_4);
-    /* (six_r-o_1) moment part of reciprocal wrench 1 */
-    const real six_r_o_1_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_1_t_2;
-    const real six_r_o_1_t = six_r_end_p1_in_axes5_y*six_r_m2_w_1_t_2;
-    const real six_r_o_1_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_1_t_2 -
-        six_r_m1_w_1_t_2*six_r_n_m1_in_axes5_y;
-    /* (six_r-o_2) moment part of reciprocal wrench 2 */
-    const real six_r_o_2_t = six_r_end_p1_in_axes5_y*six_r_m1_w_2;
-    const real six_r_o_2_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_2;
-    const real six_r_o_2_in_axes5_y = six_r_m1_w_2*six_r_n_m1_in_axes5_y -
-        six_r_end_p1_in_axes5_z*six_r_m2_w_2;
-    const real six_r_o_2_x = six_r_m1_w_2*six_r_n_m1_x + six_r_m2_w_2*six_r_n_m2_x;
-    const real six_r_o_2_y = six_r_m1_w_2*six_r_n_m1_y + six_r_m2_w_2*six_r_n_m2_y;
-    const real six_r_o_2_z = six_r_m1_w_2*six_r_n_m1_z + six_r_m2_w_2*six_r_n_m2_z;
-    /* (six_r-o_3) moment part of reciprocal wrench 3 */
-    const real six_r_o_3_t = six_r_end_p1_in_axes5_y*six_r_m1_w_3;
-    const real six_r_o_3_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_3;
-    const real six_r_o_3_in_axes5_y = six_r_m1_w_3*six_r_n_m1_in_axes5_y -
-        six_r_end_p1_in_axes5_z*six_r_m2_w_3;
-    /* (six_r-o_4) moment part of reciprocal wrench 4 */
-    const real six_r_o_4_t = six_r_end_p1_in_axes5_y*six_r_m1_w_4;
-    const real six_r_o_4_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_4;
-    const real six_r_o_4_in_axes5_y = six_r_m1_w_4*six_r_n_m1_in_axes5_y -
-        six_r_end_p1_in_axes5_z*six_r_m2_w_4;
-    /* (six_r-o_5) moment part of reciprocal wrench 5 */
-    const real six_r_o_5_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_5_t;
-    const real six_r_o_5_t = six_r_end_p1_in_axes5_y*six_r_m2_w_5_t;
-    const real six_r_o_5_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_5_t -
-        six_r_m1_w_5_t*six_r_n_m1_in_axes5_y;
     /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
     const real omega_x = V[3*w + j];
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real six_r_eta_1 = omega_x*six_r_n_m1_x + omega_y*six_r_n_m1_y +
-        omega_z*six_r_n_m1_z;
+    const real six_r_eta_1 = omega_x*v->six_r_n_m1_x + omega_y*v->six_r_n_m1_y +
+        omega_z*v->six_r_n_m1_z;
     /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
-    const real six_r_eta_2 = omega_x*six_r_n_m2_x + omega_y*six_r_n_m2_y +
-        omega_z*six_r_n_m2_z;
+    const real six_r_eta_2 = omega_x*v->six_r_n_m2_x + omega_y*v->six_r_n_m2_y +
+        omega_z*v->six_r_n_m2_z;
     /* (six_r-qd_1) rate of joint 1 */
     const real six_r_qd_1_t = six_r_eta_1*m->six_r_size[i];
     const real six_r_qd_1_t_2 = six_r_eta_2*m->six_r_size[i];
-    const real six_r_qd_1_t_3 = inv_six_r_w_1_t_79*(six_r_S_dot_in_axes5_x*six_r_w_1_t_80 +
-        six_r_S_dot_in_axes5_z*six_r_w_1_t_82 + six_r_m1_w_1_t*six_r_qd_1_t +
-        six_r_m2_w_1_t*six_r_qd_1_t_2 - six_r_S_dot_in_axes5_y*six_r_w_1_t_81);
-    const real six_r_qd_1_t_4 = inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_x*six_r_w_1_t_68 +
-        six_r_S_dot_in_axes5_z*six_r_w_1_t_70 + six_r_qd_1_t*six_r_w_1_t_71 +
-        six_r_qd_1_t_2*six_r_w_1_t_72 - six_r_S_dot_in_axes5_y*six_r_w_1_t_69 -
-        six_r_qd_1_t_3*six_r_w_1_t_73);
-    const real six_r_qd_1_t_5 = inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 -
-        six_r_S_dot_in_axes5_x*six_r_w_1_t_50 - six_r_S_dot_in_axes5_z*six_r_w_1_t_52 -
-        six_r_qd_1_t*six_r_w_1_t_53 - six_r_qd_1_t_2*six_r_w_1_t_54 +
-        six_r_qd_1_t_3*six_r_w_1_t_61 + six_r_qd_1_t_4*six_r_w_1_t_55);
+    const real six_r_qd_1_t_12 = v->inv_six_r_w_1_t_75*(v->six_r_m1_w_1_t*six_r_qd_1_t +
+        v->six_r_m2_w_1_t*six_r_qd_1_t_2 + v->six_r_qd_1_t_11 + v->six_r_qd_1_t_9 -
+        v->six_r_qd_1_t_10);
+    const real six_r_qd_1_t_13 = v->inv_six_r_w_1_t_63*(six_r_qd_1_t*v->six_r_w_1_t_67 +
+        six_r_qd_1_t_2*v->six_r_w_1_t_68 + v->six_r_qd_1_t_6 + v->six_r_qd_1_t_8 -
+        v->six_r_qd_1_t_7 - six_r_qd_1_t_12*v->six_r_w_1_t_69);
+    const real six_r_qd_1_t_14 = v->inv_six_r_w_1_t_45*(v->six_r_qd_1_t_4 -
+        six_r_qd_1_t*v->six_r_w_1_t_49 - six_r_qd_1_t_2*v->six_r_w_1_t_50 - v->six_r_qd_1_t_3
+        - v->six_r_qd_1_t_5 + six_r_qd_1_t_12*v->six_r_w_1_t_57 +
+        six_r_qd_1_t_13*v->six_r_w_1_t_51);
     /* (six_r-qd_4) rate of joint 4 */
-    const real six_r_qd_4 = inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_z*six_r_w_1_t_30 +
-        six_r_qd_1_t*six_r_w_1_t_31 + six_r_qd_1_t_2*six_r_w_1_t_32 -
-        six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_3*six_r_w_1_t_44 +
-        six_r_qd_1_t_4*six_r_w_1_t_39 - six_r_qd_1_t_5*six_r_w_1_t_33);
+    const real six_r_qd_4 = v->inv_six_r_w_1_t_24*(six_r_qd_1_t*v->six_r_w_1_t_27 +
+        six_r_qd_1_t_2*v->six_r_w_1_t_28 + v->six_r_qd_4_t_2 - v->six_r_qd_4_t +
+        six_r_qd_1_t_12*v->six_r_w_1_t_40 + six_r_qd_1_t_13*v->six_r_w_1_t_35 -
+        six_r_qd_1_t_14*v->six_r_w_1_t_29);
     /* (six_r-qd_5) rate of joint 5 */
-    const real six_r_qd_5 = inv_six_r_w_1_t_12*(six_r_S_dot_in_axes5_y*six_r_w_1_t_13 +
-        six_r_qd_1_t_2*six_r_w_1_t_14 + six_r_qd_1_t_3*six_r_w_1_t_25 -
-        six_r_qd_1_t_4*six_r_w_1_t_22 + six_r_qd_1_t_5*six_r_w_1_t_18 -
-        six_r_qd_4*six_r_w_1_t_15);
+    const real six_r_qd_5 = v->inv_six_r_w_1_t_8*(six_r_qd_1_t_2*v->six_r_w_1_t_10 +
+        v->six_r_qd_5_t + six_r_qd_1_t_12*v->six_r_w_1_t_21 -
+        six_r_qd_1_t_13*v->six_r_w_1_t_18 + six_r_qd_1_t_14*v->six_r_w_1_t_14 -
+        six_r_qd_4*v->six_r_w_1_t_11);
     /* (six_r-omega_1) angular velocity of link 1 */
-    const real six_r_omega_1_in_axes2_x = -v.six_r_c_2*six_r_qd_1_t_5;
-    const real six_r_omega_1_in_axes2_y = six_r_qd_1_t_5*v.six_r_s_2;
-    const real six_r_omega_1_t = v.six_r_e_1_in_axes5_x*six_r_qd_1_t_5;
-    const real six_r_omega_1_t_2 = v.six_r_e_1_in_axes5_y*six_r_qd_1_t_5;
-    const real six_r_omega_1_t_3 = v.six_r_e_1_in_axes5_z*six_r_qd_1_t_5;
+    const real six_r_omega_1_in_axes2_x = -v->six_r_c_2*six_r_qd_1_t_14;
+    const real six_r_omega_1_in_axes2_y = six_r_qd_1_t_14*v->six_r_s_2;
+    const real six_r_omega_1_t = v->six_r_e_1_in_axes5_x*six_r_qd_1_t_14;
+    const real six_r_omega_1_t_2 = v->six_r_e_1_in_axes5_y*six_r_qd_1_t_14;
+    const real six_r_omega_1_t_3 = v->six_r_e_1_in_axes5_z*six_r_qd_1_t_14;
     /* (six_r-W_1) centripetal tensor of link 1 */
     const real six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2;
     const real six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3;
     const real six_r_W_1_in_axes5_yz = six_r_omega_1_t_2*six_r_omega_1_t_3;
     /* (six_r-omega_2) angular velocity of link 2 */
-    const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v.six_r_s_3 -
-        v.six_r_c_3*six_r_omega_1_in_axes2_y;
-    const real six_r_omega_2_in_axes3_y = v.six_r_c_3*six_r_omega_1_in_axes2_x +
-        six_r_omega_1_in_axes2_y*v.six_r_s_3;
-    const real six_r_omega_2_in_axes5_x = v.six_r_e_2_in_axes5_x*six_r_qd_1_t_4 -
+    const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v->six_r_s_3 -
+        v->six_r_c_3*six_r_omega_1_in_axes2_y;
+    const real six_r_omega_2_in_axes3_y = v->six_r_c_3*six_r_omega_1_in_axes2_x +
+        six_r_omega_1_in_axes2_y*v->six_r_s_3;
+    const real six_r_omega_2_in_axes5_x = v->six_r_e_2_in_axes5_x*six_r_qd_1_t_13 -
         six_r_omega_1_t;
-    const real six_r_omega_2_in_axes5_y = v.six_r_e_2_in_axes5_y*six_r_qd_1_t_4 -
+    const real six_r_omega_2_in_axes5_y = v->six_r_e_2_in_axes5_y*six_r_qd_1_t_13 -
         six_r_omega_1_t_2;
-    const real six_r_omega_2_in_axes5_z = v.six_r_e_2_in_axes5_z*six_r_qd_1_t_4 -
+    const real six_r_omega_2_in_axes5_z = v->six_r_e_2_in_axes5_z*six_r_qd_1_t_13 -
         six_r_omega_1_t_3;
     /* (six_r-W_2) centripetal tensor of link 2 */
-    const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4;
+    const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_13;
     const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
     const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
     const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
     const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
     /* (six_r-omega_3) angular velocity of link 3 */
-    const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_3 + six_r_qd_1_t_4;
-    const real six_r_omega_3_in_axes4_x = v.six_r_h_4_t*six_r_omega_3_in_axes3_z -
-        v.six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x;
-    const real six_r_omega_3_in_axes4_y = v.six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z +
-        v.six_r_h_4_t*six_r_omega_2_in_axes3_x;
-    const real six_r_omega_3_t = v.six_r_J_5_t*six_r_omega_3_in_axes4_x;
-    const real six_r_omega_3_t_2 = v.six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x;
-    const real six_r_omega_3_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y +
+    const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_12 + six_r_qd_1_t_13;
+    const real six_r_omega_3_in_axes4_x = v->six_r_h_4_t*six_r_omega_3_in_axes3_z -
+        v->six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x;
+    const real six_r_omega_3_in_axes4_y = v->six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z +
+        v->six_r_h_4_t*six_r_omega_2_in_axes3_x;
+    const real six_r_omega_3_t = v->six_r_J_5_t*six_r_omega_3_in_axes4_x;
+    const real six_r_omega_3_t_2 = v->six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x;
+    const real six_r_omega_3_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y +
         six_r_omega_3_t;
     const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
-        v.six_r_J_5_t*six_r_omega_2_in_axes3_y;
+        v->six_r_J_5_t*six_r_omega_2_in_axes3_y;
     /* (six_r-W_3) centripetal tensor of link 3 */
     const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
     const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
@@ -4192,10 +3696,10 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
     /* (six_r-omega_4) angular velocity of link 4 */
     const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
-    const real six_r_omega_4_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z +
+    const real six_r_omega_4_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z +
         six_r_omega_3_t;
     const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
-        v.six_r_J_5_t*six_r_omega_4_in_axes4_z;
+        v->six_r_J_5_t*six_r_omega_4_in_axes4_z;
     /* (six_r-W_4) centripetal tensor of link 4 */
     const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
     const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
@@ -4210,43 +3714,46 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
     const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
     /* (six_r-u_1) centripetal acceleration of the connection point */
-    const real six_r_u_1_in_axes5_x = axis_x_six_r_axes5_x*v.six_r_u_1_x +
-        axis_x_six_r_axes5_y*v.six_r_u_1_y + axis_x_six_r_axes5_z*v.six_r_u_1_z;
-    const real six_r_u_1_in_axes5_y = axis_y_six_r_axes5_x*v.six_r_u_1_x +
-        axis_y_six_r_axes5_y*v.six_r_u_1_y + axis_y_six_r_axes5_z*v.six_r_u_1_z;
-    const real six_r_u_1_in_axes5_z = axis_z_six_r_axes5_x*v.six_r_u_1_x +
-        axis_z_six_r_axes5_y*v.six_r_u_1_y + axis_z_six_r_axes5_z*v.six_r_u_1_z;
+    const real six_r_u_1_x = omega_y*v->six_r_S_dot_t_16 - omega_z*v->six_r_S_dot_t_15;
+    const real six_r_u_1_y = omega_z*v->six_r_S_dot_t_14 - omega_x*v->six_r_S_dot_t_16;
+    const real six_r_u_1_z = omega_x*v->six_r_S_dot_t_15 - omega_y*v->six_r_S_dot_t_14;
+    const real six_r_u_1_in_axes5_x = v->axis_x_six_r_axes5_x*six_r_u_1_x +
+        v->axis_x_six_r_axes5_y*six_r_u_1_y + v->axis_x_six_r_axes5_z*six_r_u_1_z;
+    const real six_r_u_1_in_axes5_y = v->axis_y_six_r_axes5_x*six_r_u_1_x +
+        v->axis_y_six_r_axes5_y*six_r_u_1_y + v->axis_y_six_r_axes5_z*six_r_u_1_z;
+    const real six_r_u_1_in_axes5_z = v->axis_z_six_r_axes5_x*six_r_u_1_x +
+        v->axis_z_six_r_axes5_y*six_r_u_1_y + v->axis_z_six_r_axes5_z*six_r_u_1_z;
     /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4;
-    const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v.six_r_s_3 -
-        v.six_r_c_3*six_r_zeta_2_in_axes2_y;
-    const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v.six_r_c_3 +
-        v.six_r_s_3*six_r_zeta_2_in_axes2_y;
-    const real six_r_zeta_2_t = v.six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x;
-    const real six_r_zeta_2_in_axes5_z = v.six_r_h_4_t*six_r_zeta_2_in_axes3_x;
-    const real six_r_zeta_2_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y -
-        v.six_r_J_5_t*six_r_zeta_2_t;
-    const real six_r_zeta_2_in_axes5_y = -v.six_r_J_5_t*six_r_zeta_2_in_axes3_y -
-        v.six_r_e_4_in_axes5_x*six_r_zeta_2_t;
+    const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_13;
+    const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v->six_r_s_3 -
+        v->six_r_c_3*six_r_zeta_2_in_axes2_y;
+    const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v->six_r_c_3 +
+        v->six_r_s_3*six_r_zeta_2_in_axes2_y;
+    const real six_r_zeta_2_t = v->six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_z = v->six_r_h_4_t*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y -
+        v->six_r_J_5_t*six_r_zeta_2_t;
+    const real six_r_zeta_2_in_axes5_y = -v->six_r_J_5_t*six_r_zeta_2_in_axes3_y -
+        v->six_r_e_4_in_axes5_x*six_r_zeta_2_t;
     /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-    const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3;
-    const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3;
+    const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_12;
+    const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_12;
     /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
     const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x;
     const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t;
-    const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v.six_r_e_2_in_axes5_z;
-    const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v.six_r_h_4_t;
+    const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v->six_r_e_2_in_axes5_z;
+    const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v->six_r_h_4_t;
     /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
     const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
     const real six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4;
     /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
     const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
     const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t;
-    const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v.six_r_e_4_in_axes5_x;
+    const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v->six_r_e_4_in_axes5_x;
     const real six_r_beta_4_in_axes5_x = six_r_beta_4_t +
-        v.six_r_J_5_t*six_r_beta_4_in_axes4_x;
-    const real six_r_beta_4_t_2 = v.six_r_J_5_t*six_r_beta_3_in_axes3_y;
-    const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v.six_r_e_4_in_axes5_x -
+        v->six_r_J_5_t*six_r_beta_4_in_axes4_x;
+    const real six_r_beta_4_t_2 = v->six_r_J_5_t*six_r_beta_3_in_axes3_y;
+    const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v->six_r_e_4_in_axes5_x -
         six_r_beta_4_t_2;
     /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
     const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
@@ -4257,60 +3764,49 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
     const real six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
     const real six_r_bias_t_2 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
-    const real six_r_bias_t_6 = v.six_r_bias_t_4*v.six_r_e_2_in_axes5_z;
-    const real six_r_d_2_in_axes5_z = v.six_r_bias_t_4*v.six_r_h_4_t;
-    const real six_r_d_2_in_axes5_x = v.six_r_bias_t_5*v.six_r_e_4_in_axes5_x -
-        v.six_r_J_5_t*six_r_bias_t_6;
-    const real six_r_d_2_in_axes5_y = -v.six_r_J_5_t*v.six_r_bias_t_5 -
-        six_r_bias_t_6*v.six_r_e_4_in_axes5_x;
     const real six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t;
     const real six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2;
     const real six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3;
-    const real six_r_bias_t_12 = v.six_r_bias_t_10*v.six_r_e_2_in_axes5_z;
-    const real six_r_d_3_in_axes5_z = v.six_r_bias_t_10*v.six_r_h_4_t;
-    const real six_r_d_3_in_axes5_x = v.six_r_bias_t_11*v.six_r_e_4_in_axes5_x -
-        v.six_r_J_5_t*six_r_bias_t_12;
-    const real six_r_d_3_in_axes5_y = -v.six_r_J_5_t*v.six_r_bias_t_11 -
-        six_r_bias_t_12*v.six_r_e_4_in_axes5_x;
     const real six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
     const real six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
     const real six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
-    const real six_r_d_4_in_axes5_x = v.six_r_e_4_in_axes5_x*m->six_r_joint4_offset_x[i];
-    const real six_r_bias_t_16 = v.six_r_J_5_t*m->six_r_joint4_offset_x[i];
-    const real six_r_d_5_in_axes5_x = v.six_r_e_4_in_axes5_x*m->six_r_joint5_offset_x[i];
-    const real six_r_bias_t_17 = v.six_r_J_5_t*m->six_r_joint5_offset_x[i];
     const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
-    const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y +
-        six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z - six_r_d_2_in_axes5_x*(six_r_bias_t_8 +
-        six_r_bias_t_9) - six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) +
-        six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-        six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+    const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_y +
+        six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_z -
+        v->six_r_d_2_in_axes5_x*(six_r_bias_t_8 + six_r_bias_t_9) -
+        v->six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) +
+        v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
+        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
         six_r_W_5_t_3*m->six_r_platform_joint_offset_x[i] -
-        six_r_bias_t_16*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
-        six_r_bias_t_17*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
-        six_r_d_4_in_axes5_x*(six_r_bias_t +
+        v->six_r_bias_t_16*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
+        v->six_r_bias_t_17*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
+        v->six_r_d_4_in_axes5_x*(six_r_bias_t +
         six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
-        six_r_d_5_in_axes5_x*(six_r_bias_t + six_r_W_5_t);
-    const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z - six_r_d_2_in_axes5_y*(six_r_bias_t_7 +
-        six_r_bias_t_9) - six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15) +
-        six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-        six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-        six_r_bias_t_16*(six_r_bias_t + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
-        six_r_bias_t_17*(six_r_bias_t + six_r_bias_t_2) + six_r_bias_t_18*six_r_d_5_in_axes5_x
-        + six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
-        six_r_d_4_in_axes5_x*(six_r_beta_3_in_axes4_y + six_r_W_3_in_axes5_xy);
-    const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y - six_r_d_2_in_axes5_z*(six_r_bias_t_7 +
-        six_r_bias_t_8) - six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14) +
-        six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-        six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-        six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_e_4_in_axes5_x +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) - six_r_bias_t_16*(six_r_beta_4_t +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - v.six_r_J_5_t*six_r_beta_3_t) +
-        six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+        v->six_r_d_5_in_axes5_x*(six_r_bias_t + six_r_W_5_t);
+    const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_z -
+        v->six_r_d_2_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_9) -
+        v->six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15) +
+        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
+        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
+        v->six_r_bias_t_16*(six_r_bias_t + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x)
+        + v->six_r_bias_t_17*(six_r_bias_t + six_r_bias_t_2) +
+        six_r_bias_t_18*v->six_r_d_5_in_axes5_x +
+        six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
+        v->six_r_d_4_in_axes5_x*(six_r_beta_3_in_axes4_y + six_r_W_3_in_axes5_xy);
+    const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_y -
+        v->six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
+        v->six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14) +
+        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
+        v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
+        v->six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v->six_r_e_4_in_axes5_x +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) -
+        v->six_r_bias_t_16*(six_r_beta_4_t + six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y
+        - v->six_r_J_5_t*six_r_beta_3_t) +
+        v->six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
         six_r_beta_4_in_axes5_y) -
-        six_r_bias_t_17*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y +
+        v->six_r_bias_t_17*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y +
         six_r_beta_4_in_axes5_x) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
         - six_r_beta_5_in_axes5_y);
     /* (six_r-rel_o) remainder of: acceleration of the connection point left to the joint
@@ -4319,65 +3815,56 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y;
     const real six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z;
     /* (six_r-nd_m1) rate of moment direction 1 */
-    const real six_r_omega_in_axes5_x = axis_x_six_r_axes5_x*omega_x +
-        axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z;
-    const real six_r_omega_in_axes5_y = axis_y_six_r_axes5_x*omega_x +
-        axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z;
-    const real six_r_omega_in_axes5_z = axis_z_six_r_axes5_x*omega_x +
-        axis_z_six_r_axes5_y*omega_y + axis_z_six_r_axes5_z*omega_z;
-    const real six_r_nd_m1_t = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_z -
-        six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_x;
-    const real six_r_nd_m1_in_axes5_x = -six_r_nd_m1_t -
-        six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
-    const real six_r_nd_m1_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
-        six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_z -
-        six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
+    const real six_r_nd_m1_in_axes5_x = -v->six_r_nd_m1_t -
+        v->six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
+    const real six_r_nd_m1_in_axes5_y = v->six_r_eta_2_t -
+        v->six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
     /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real six_r_nu_1_t = six_r_end_p1_in_axes5_y*six_r_omega_4_in_axes5_y;
-    const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*six_r_end_p1_in_axes5_y -
-        six_r_beta_5_in_axes5_y*six_r_n_m1_in_axes5_y;
-    const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - six_r_omega_in_axes5_x;
-    const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - six_r_omega_in_axes5_y;
-    const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - six_r_omega_in_axes5_z;
+    const real six_r_nu_1_t = v->six_r_end_p1_in_axes5_y*six_r_omega_4_in_axes5_y;
+    const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v->six_r_end_p1_in_axes5_y -
+        six_r_beta_5_in_axes5_y*v->six_r_n_m1_in_axes5_y;
+    const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - v->six_r_omega_in_axes5_x;
+    const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v->six_r_omega_in_axes5_y;
+    const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v->six_r_omega_in_axes5_z;
     const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
         six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
-        six_r_nu_1_t_5*(six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x + six_r_nu_1_t);
+        six_r_nu_1_t_5*(v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x + six_r_nu_1_t);
     const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
     /* (six_r-nd_m2) rate of moment direction 2 */
-    const real six_r_nd_m2_in_axes5_y = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
-        six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_x -
-        six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
-    const real six_r_nd_m2_in_axes5_z = six_r_nd_m1_t -
-        six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
+    const real six_r_nd_m2_in_axes5_y = v->six_r_eta_1_2 -
+        v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
+    const real six_r_nd_m2_in_axes5_z = v->six_r_nd_m1_t -
+        v->six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
     /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
-    const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-        six_r_beta_4_in_axes4_y*six_r_end_p1_in_axes5_y;
+    const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v->six_r_end_p1_in_axes5_z -
+        six_r_beta_4_in_axes4_y*v->six_r_end_p1_in_axes5_y;
     const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
         six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
-        six_r_nu_1_t_3*(six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z + six_r_nu_1_t);
+        six_r_nu_1_t_3*(v->six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z + six_r_nu_1_t);
     const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
     /* (six_r-qdd_1_o) remainder of: acceleration of joint 1 */
     const real six_r_qdd_1_o_t = six_r_nu_1*m->six_r_size[i];
     const real six_r_qdd_1_o_t_2 = six_r_nu_2*m->six_r_size[i];
-    const real six_r_qdd_1_o_t_3 = inv_six_r_w_1_t_79*(six_r_m1_w_1_t*six_r_qdd_1_o_t +
-        six_r_m2_w_1_t*six_r_qdd_1_o_t_2 + six_r_rel_o_in_axes5_x*six_r_w_1_t_80 -
-        six_r_rel_o_in_axes5_y*six_r_w_1_t_81 + six_r_rel_o_in_axes5_z*six_r_w_1_t_82);
-    const real six_r_qdd_1_o_t_4 = inv_six_r_w_1_t_67*(six_r_qdd_1_o_t*six_r_w_1_t_71 +
-        six_r_qdd_1_o_t_2*six_r_w_1_t_72 + six_r_rel_o_in_axes5_x*six_r_w_1_t_68 -
-        six_r_rel_o_in_axes5_y*six_r_w_1_t_69 + six_r_rel_o_in_axes5_z*six_r_w_1_t_70 -
-        six_r_qdd_1_o_t_3*six_r_w_1_t_73);
-    const real six_r_qdd_1_o_t_5 = inv_six_r_w_1_t_49*(six_r_rel_o_in_axes5_y*six_r_w_1_t_51 -
-        six_r_qdd_1_o_t*six_r_w_1_t_53 - six_r_qdd_1_o_t_2*six_r_w_1_t_54 -
-        six_r_rel_o_in_axes5_x*six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*six_r_w_1_t_52 +
-        six_r_qdd_1_o_t_3*six_r_w_1_t_61 + six_r_qdd_1_o_t_4*six_r_w_1_t_55);
+    const real six_r_qdd_1_o_t_3 = v->inv_six_r_w_1_t_75*(v->six_r_m1_w_1_t*six_r_qdd_1_o_t +
+        v->six_r_m2_w_1_t*six_r_qdd_1_o_t_2 + six_r_rel_o_in_axes5_x*v->six_r_w_1_t_76 -
+        six_r_rel_o_in_axes5_y*v->six_r_w_1_t_77 + six_r_rel_o_in_axes5_z*v->six_r_w_1_t_78);
+    const real six_r_qdd_1_o_t_4 = v->inv_six_r_w_1_t_63*(six_r_qdd_1_o_t*v->six_r_w_1_t_67 +
+        six_r_qdd_1_o_t_2*v->six_r_w_1_t_68 + six_r_rel_o_in_axes5_x*v->six_r_w_1_t_64 -
+        six_r_rel_o_in_axes5_y*v->six_r_w_1_t_65 + six_r_rel_o_in_axes5_z*v->six_r_w_1_t_66 -
+        six_r_qdd_1_o_t_3*v->six_r_w_1_t_69);
+    const real six_r_qdd_1_o_t_5 =
+        v->inv_six_r_w_1_t_45*(six_r_rel_o_in_axes5_y*v->six_r_w_1_t_47 -
+        six_r_qdd_1_o_t*v->six_r_w_1_t_49 - six_r_qdd_1_o_t_2*v->six_r_w_1_t_50 -
+        six_r_rel_o_in_axes5_x*v->six_r_w_1_t_46 - six_r_rel_o_in_axes5_z*v->six_r_w_1_t_48 +
+        six_r_qdd_1_o_t_3*v->six_r_w_1_t_57 + six_r_qdd_1_o_t_4*v->six_r_w_1_t_51);
     /* (six_r-qdd_4_o) remainder of: acceleration of joint 4 */
-    const real six_r_qdd_4_o = inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*six_r_w_1_t_31 +
-        six_r_qdd_1_o_t_2*six_r_w_1_t_32 - six_r_rel_o_in_axes5_y*six_r_w_1_t_29 +
-        six_r_rel_o_in_axes5_z*six_r_w_1_t_30 + six_r_qdd_1_o_t_3*six_r_w_1_t_44 +
-        six_r_qdd_1_o_t_4*six_r_w_1_t_39 - six_r_qdd_1_o_t_5*six_r_w_1_t_33);
+    const real six_r_qdd_4_o = v->inv_six_r_w_1_t_24*(six_r_qdd_1_o_t*v->six_r_w_1_t_27 +
+        six_r_qdd_1_o_t_2*v->six_r_w_1_t_28 - six_r_rel_o_in_axes5_y*v->six_r_w_1_t_25 +
+        six_r_rel_o_in_axes5_z*v->six_r_w_1_t_26 + six_r_qdd_1_o_t_3*v->six_r_w_1_t_40 +
+        six_r_qdd_1_o_t_4*v->six_r_w_1_t_35 - six_r_qdd_1_o_t_5*v->six_r_w_1_t_29);
     /* (six_r-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real six_r_alpha_1_o_t = v.six_r_c_2*six_r_qdd_1_o_t_5;
-    const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v.six_r_s_2;
+    const real six_r_alpha_1_o_t = v->six_r_c_2*six_r_qdd_1_o_t_5;
+    const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v->six_r_s_2;
     /* (six_r-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
     const real six_r_alpha_2_o_in_axes2_y = six_r_zeta_2_in_axes2_y +
@@ -4390,9 +3877,9 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
     /* (six_r-alpha_3_o) remainder of: angular acceleration of link 3 */
     const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
-        six_r_alpha_2_o_in_axes2_x*v.six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v.six_r_c_3;
-    const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 -
-        six_r_zeta_3_t + six_r_alpha_2_o_in_axes2_y*v.six_r_s_3;
+        six_r_alpha_2_o_in_axes2_x*v->six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v->six_r_c_3;
+    const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v->six_r_c_3 -
+        six_r_zeta_3_t + six_r_alpha_2_o_in_axes2_y*v->six_r_s_3;
     const real six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4;
     /* (six_r-B_3_o) remainder of the acceleration tensor of link 3 */
     const real six_r_B_3_o_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_o_in_axes3_z;
@@ -4403,10 +3890,10 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x;
     /* (six_r-alpha_4_o) remainder of: angular acceleration of link 4 */
     const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
-        six_r_alpha_3_o_in_axes3_z*v.six_r_h_4_t -
-        six_r_alpha_3_o_in_axes3_x*v.six_r_e_2_in_axes5_z;
-    const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_z*v.six_r_e_2_in_axes5_z
-        - six_r_zeta_4_t + six_r_alpha_3_o_in_axes3_x*v.six_r_h_4_t;
+        six_r_alpha_3_o_in_axes3_z*v->six_r_h_4_t -
+        six_r_alpha_3_o_in_axes3_x*v->six_r_e_2_in_axes5_z;
+    const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_z*v->six_r_e_2_in_axes5_z
+        - six_r_zeta_4_t + six_r_alpha_3_o_in_axes3_x*v->six_r_h_4_t;
     const real six_r_alpha_4_o_in_axes4_z = six_r_qdd_4_o + six_r_alpha_3_o_in_axes3_y;
     /* (six_r-B_4_o) remainder of the acceleration tensor of link 4 */
     const real six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z;
@@ -4415,62 +3902,17 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_B_4_o_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_o_in_axes4_x;
     const real six_r_B_4_o_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_o_in_axes4_y;
     const real six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x;
-    /* (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
-    const real six_r_dalpha_alpha_5_in_axes5_xx = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x
-        - v.six_r_e_2_in_axes5_x*six_r_o_3_t - v.six_r_e_4_in_axes5_x*six_r_o_4_t -
-        v.six_r_e_2_in_axes5_x*six_r_o_2_t;
-    const real six_r_dalpha_alpha_5_in_axes5_xy = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y
-        + v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
-        v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y +
-        v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_xz = v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z
-        + v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_x*six_r_o_1_t +
-        v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z;
-    const real six_r_dalpha_alpha_5_in_axes5_yx = v.six_r_J_5_t*six_r_o_4_t +
-        v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_y*six_r_o_3_t -
-        v.six_r_e_2_in_axes5_y*six_r_o_2_t;
-    const real six_r_dalpha_alpha_5_in_axes5_yy = v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y
-        + v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v.six_r_J_5_t*six_r_o_4_in_axes5_y +
-        v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_yz = v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z
-        - v.six_r_J_5_t*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_y*six_r_o_1_t +
-        v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z;
-    const real six_r_dalpha_alpha_5_in_axes5_zx = six_r_o_5_in_axes5_x +
-        v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_z*six_r_o_3_t -
-        v.six_r_e_2_in_axes5_z*six_r_o_2_t;
-    const real six_r_dalpha_alpha_5_in_axes5_zy = six_r_o_5_in_axes5_y +
-        v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
-        v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y +
-        v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_zz = v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z
-        - six_r_o_5_t - v.six_r_e_1_in_axes5_z*six_r_o_1_t +
-        v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z;
-    /* (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
-    const real six_r_d_alpha_5_in_axes5_xz = v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
-        v.six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z +
-        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z +
-        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z;
-    const real six_r_d_alpha_5_in_axes5_yz = v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
-        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v.six_r_J_5_t*six_r_w_4_in_axes5_z +
-        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z;
-    const real six_r_d_alpha_5_in_axes5_zy = six_r_w_5_in_axes5_y +
-        v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y - v.six_r_e_2_in_axes5_z*six_r_w_3_t +
-        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y;
-    const real six_r_d_alpha_5_in_axes5_zz = six_r_w_5_in_axes5_z +
-        v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
-        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z +
-        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z;
     /* (six_r-alpha_5_o) remainder of: angular acceleration of link 5 */
     const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
-        v.six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
-        six_r_alpha_4_o_in_axes4_z*v.six_r_e_4_in_axes5_x;
-    const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v.six_r_e_4_in_axes5_x
-        - six_r_zeta_5_t - v.six_r_J_5_t*six_r_alpha_4_o_in_axes4_z;
+        v->six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
+        six_r_alpha_4_o_in_axes4_z*v->six_r_e_4_in_axes5_x;
+    const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v->six_r_e_4_in_axes5_x
+        - six_r_zeta_5_t - v->six_r_J_5_t*six_r_alpha_4_o_in_axes4_z;
     const real six_r_alpha_5_o_in_axes5_z =
-        inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*six_r_w_1_t_14 +
-        six_r_rel_o_in_axes5_y*six_r_w_1_t_13 + six_r_qdd_1_o_t_3*six_r_w_1_t_25 -
-        six_r_qdd_1_o_t_4*six_r_w_1_t_22 + six_r_qdd_1_o_t_5*six_r_w_1_t_18 -
-        six_r_qdd_4_o*six_r_w_1_t_15) + six_r_alpha_4_o_in_axes4_y;
+        v->inv_six_r_w_1_t_8*(six_r_qdd_1_o_t_2*v->six_r_w_1_t_10 +
+        six_r_rel_o_in_axes5_y*v->six_r_w_1_t_9 + six_r_qdd_1_o_t_3*v->six_r_w_1_t_21 -
+        six_r_qdd_1_o_t_4*v->six_r_w_1_t_18 + six_r_qdd_1_o_t_5*v->six_r_w_1_t_14 -
+        six_r_qdd_4_o*v->six_r_w_1_t_11) + six_r_alpha_4_o_in_axes4_y;
     /* (six_r-B_5_o) remainder of the acceleration tensor of link 5 */
     const real six_r_B_5_o_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_o_in_axes5_z;
     const real six_r_B_5_o_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_o_in_axes5_y;
@@ -4480,15 +3922,15 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x;
     /* (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
     const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
-    const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4;
+    const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_13*six_r_qd_1_t_13;
     const real six_r_a_o_3_o_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_o_t_2 +
         six_r_a_o_3_o_t);
     const real six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*m->six_r_joint3_offset_x[i];
     const real six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*m->six_r_joint3_offset_x[i];
-    const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_x*v.six_r_s_3 -
-        six_r_a_o_3_o_in_axes2_y*v.six_r_c_3;
-    const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v.six_r_c_3 +
-        six_r_a_o_3_o_in_axes2_y*v.six_r_s_3;
+    const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_x*v->six_r_s_3 -
+        six_r_a_o_3_o_in_axes2_y*v->six_r_c_3;
+    const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v->six_r_c_3 +
+        six_r_a_o_3_o_in_axes2_y*v->six_r_s_3;
     /* (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4 */
     const real six_r_a_o_4_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*m->six_r_joint4_offset_x[i]
         + six_r_a_o_3_o_in_axes3_x;
@@ -4497,9 +3939,9 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
         six_r_B_3_o_in_axes3_zy*m->six_r_joint4_offset_x[i];
     /* (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - v.six_r_g_in_axes3_x;
-    const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - v.six_r_g_in_axes3_y;
-    const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v.six_r_g_in_axes1_y;
+    const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - v->six_r_g_in_axes3_x;
+    const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - v->six_r_g_in_axes3_y;
+    const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v->six_r_g_in_axes1_y;
     /* (six_r-f_3_o) remainder of: inertia force of link 3 less its weight */
     const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
     const real six_r_f_3_o_in_axes3_x = m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 +
@@ -4515,13 +3957,11 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         six_r_acc_3_o_in_axes3_z*m->six_r_link3_mass[i] -
         six_r_B_3_o_in_axes3_zx*m->six_r_h_3_in_spec3_y[i];
     /* (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-    const real six_r_acc_4_o_in_axes4_x = v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes3_x -
-        v.six_r_g_in_axes1_y*v.six_r_h_4_t - six_r_a_o_4_o_in_axes3_x*v.six_r_e_2_in_axes5_z +
-        six_r_a_o_4_o_in_axes3_z*v.six_r_h_4_t;
-    const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v.six_r_h_4_t -
-        v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes1_y - v.six_r_g_in_axes3_x*v.six_r_h_4_t +
-        six_r_a_o_4_o_in_axes3_z*v.six_r_e_2_in_axes5_z;
-    const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v.six_r_g_in_axes3_y;
+    const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v->six_r_h_4_t -
+        v->six_r_g_in_axes4_x - six_r_a_o_4_o_in_axes3_x*v->six_r_e_2_in_axes5_z;
+    const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v->six_r_h_4_t -
+        v->six_r_g_in_axes4_y + six_r_a_o_4_o_in_axes3_z*v->six_r_e_2_in_axes5_z;
+    const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v->six_r_g_in_axes3_y;
     /* (six_r-f_4_o) remainder of: inertia force of link 4 less its weight */
     const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
     const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
@@ -4537,29 +3977,14 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t + six_r_f_4_o_t) +
         six_r_B_4_o_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
         six_r_B_4_o_in_axes4_zy*m->six_r_h_4_in_spec4_z[i];
-    const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v.six_r_h_4_t -
-        v.six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x;
-    const real six_r_f_4_o_in_axes3_z = v.six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y +
-        six_r_f_4_o_in_axes4_x*v.six_r_h_4_t;
+    const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v->six_r_h_4_t -
+        v->six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x;
+    const real six_r_f_4_o_in_axes3_z = v->six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y +
+        six_r_f_4_o_in_axes4_x*v->six_r_h_4_t;
     /* (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity */
-    const real six_r_acc_5_o_in_axes5_x = six_r_u_1_in_axes5_x -
-        axis_x_six_r_axes5_x*m->gravity_x - axis_x_six_r_axes5_y*m->gravity_y -
-        axis_x_six_r_axes5_z*m->gravity_z;
-    const real six_r_acc_5_o_in_axes5_y = six_r_u_1_in_axes5_y -
-        axis_y_six_r_axes5_x*m->gravity_x - axis_y_six_r_axes5_y*m->gravity_y -
-        axis_y_six_r_axes5_z*m->gravity_z;
-    const real six_r_acc_5_o_in_axes5_z = six_r_u_1_in_axes5_z -
-        axis_z_six_r_axes5_x*m->gravity_x - axis_z_six_r_axes5_y*m->gravity_y -
-        axis_z_six_r_axes5_z*m->gravity_z;
-    /* (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning
-       about its reference point */
-    const real six_r_d_phi_5_in_axes5_xx =
-        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
-        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v.six_r_J_5_t*six_r_w_4_in_axes5_x +
-        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x) -
-        m->six_r_h_5_in_spec5_y[i]*(v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
-        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5 +
-        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x);
+    const real six_r_acc_5_o_in_axes5_x = six_r_u_1_in_axes5_x - v->six_r_g_in_axes5_x;
+    const real six_r_acc_5_o_in_axes5_y = six_r_u_1_in_axes5_y - v->six_r_g_in_axes5_y;
+    const real six_r_acc_5_o_in_axes5_z = six_r_u_1_in_axes5_z - v->six_r_g_in_axes5_z;
     /* (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their
        reference points */
     const real six_r_mu_5_o_in_axes5_x = six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
@@ -4583,40 +4008,6 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         six_r_B_5_o_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] +
         six_r_B_5_o_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] -
         six_r_B_5_o_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i];
-    /* (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal
-       links' inertia and weight */
-    const real six_r_dalpha_Gamma_5_in_axes5_x = v.six_r_D_1_5*six_r_o_1_in_axes5_x +
-        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_x - v.six_r_D_3_5*six_r_o_3_t -
-        v.six_r_J_5_in_axes4_yz*six_r_o_4_t - v.six_r_D_3_5*six_r_o_2_t;
-    const real six_r_dalpha_Gamma_5_in_axes5_y = v.six_r_D_1_5*six_r_o_1_in_axes5_y +
-        v.six_r_D_3_5*six_r_o_3_in_axes5_y + v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
-        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_y + v.six_r_D_3_5*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_Gamma_5_in_axes5_z = v.six_r_D_3_5*six_r_o_3_in_axes5_z +
-        v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_1_t -
-        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_t + v.six_r_D_3_5*six_r_o_2_in_axes5_z;
-    /* (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links'
-       inertia and weight */
-    const real six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*m->six_r_J_5_in_spec5_zz[i];
-    const real six_r_d_Gamma_5_t_2 = inv_six_r_w_1_t_28*(v.six_r_J_5_in_axes4_yz -
-        six_r_d_Gamma_5_t*six_r_w_1_t_15);
-    const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(v.six_r_D_1_5 -
-        six_r_d_Gamma_5_t*six_r_w_1_t_18 + six_r_d_Gamma_5_t_2*six_r_w_1_t_33);
-    const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(v.six_r_D_3_5 -
-        six_r_d_Gamma_5_t*six_r_w_1_t_22 + six_r_d_Gamma_5_t_2*six_r_w_1_t_39 -
-        six_r_d_Gamma_5_t_3*six_r_w_1_t_55);
-    const real six_r_d_Gamma_5_t_5 = inv_six_r_w_1_t_79*(v.six_r_D_3_5 +
-        six_r_d_Gamma_5_t*six_r_w_1_t_25 + six_r_d_Gamma_5_t_2*six_r_w_1_t_44 -
-        six_r_d_Gamma_5_t_3*six_r_w_1_t_61 - six_r_d_Gamma_5_t_4*six_r_w_1_t_73);
-    const real six_r_d_Gamma_5_in_axes5_z = six_r_d_Gamma_5_t_2*six_r_w_1_t_30 +
-        six_r_d_Gamma_5_t_3*six_r_w_1_t_52 + six_r_d_Gamma_5_t_4*six_r_w_1_t_70 +
-        six_r_d_Gamma_5_t_5*six_r_w_1_t_82;
-    const real six_r_d_Gamma_5_in_axes5_x = six_r_d_Gamma_5_t_3*six_r_w_1_t_50 -
-        m->six_r_h_5_in_spec5_y[i] + six_r_d_Gamma_5_t_4*six_r_w_1_t_68 +
-        six_r_d_Gamma_5_t_5*six_r_w_1_t_80;
-    const real six_r_d_Gamma_5_in_axes5_y = m->six_r_h_5_in_spec5_x[i] +
-        six_r_d_Gamma_5_t*six_r_w_1_t_13 - six_r_d_Gamma_5_t_2*six_r_w_1_t_29 -
-        six_r_d_Gamma_5_t_3*six_r_w_1_t_51 - six_r_d_Gamma_5_t_4*six_r_w_1_t_69 -
-        six_r_d_Gamma_5_t_5*six_r_w_1_t_81;
     /* (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
        reference points */
     const real six_r_mu_4_o_in_axes4_x = m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t -
@@ -4644,50 +4035,11 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     /* (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the
        connection point left out */
     const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
-        v.six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
-        v.six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y;
+        v->six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
+        v->six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y;
     const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
-    const real six_r_N_4_o_in_axes4_z = v.six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
-        v.six_r_J_5_t*six_r_mu_5_o_in_axes5_y + six_r_mu_4_o_in_axes4_z;
-    /* (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
-       links' inertia and weight */
-    const real six_r_dalpha_Gamma_4_in_axes5_x = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_x
-        + v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x -
-        v.six_r_Jc_4_in_axes4_zz*six_r_o_4_t - v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_t -
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_t;
-    const real six_r_dalpha_Gamma_4_in_axes5_y = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_y
-        + v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_Gamma_4_in_axes5_z = v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z
-        + v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z -
-        v.six_r_J_5_in_axes4_yz*six_r_o_5_t - v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_t +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z;
-    /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
-       inertia and weight */
-    const real six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*v.six_r_J_5_in_axes4_yz;
-    const real six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_28*(v.six_r_Jc_4_in_axes4_zz -
-        six_r_d_Gamma_4_t*six_r_w_1_t_15);
-    const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(v.six_r_L_c_4_2_in_axes1_z -
-        six_r_d_Gamma_4_t*six_r_w_1_t_18 + six_r_d_Gamma_4_t_2*six_r_w_1_t_33);
-    const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(v.six_r_L_c_4_2_in_axes2_z -
-        six_r_d_Gamma_4_t*six_r_w_1_t_22 + six_r_d_Gamma_4_t_2*six_r_w_1_t_39 -
-        six_r_d_Gamma_4_t_3*six_r_w_1_t_55);
-    const real six_r_d_Gamma_4_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_4_3_in_axes3_z +
-        six_r_d_Gamma_4_t*six_r_w_1_t_25 + six_r_d_Gamma_4_t_2*six_r_w_1_t_44 -
-        six_r_d_Gamma_4_t_3*six_r_w_1_t_61 - six_r_d_Gamma_4_t_4*six_r_w_1_t_73);
-    const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_3*six_r_w_1_t_50 -
-        v.six_r_J_5_t*m->six_r_h_5_in_spec5_z[i] + six_r_d_Gamma_4_t_4*six_r_w_1_t_68 +
-        six_r_d_Gamma_4_t_5*six_r_w_1_t_80;
-    const real six_r_d_Gamma_4_in_axes5_y = six_r_d_Gamma_4_t*six_r_w_1_t_13 -
-        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_z[i] - six_r_d_Gamma_4_t_2*six_r_w_1_t_29
-        - six_r_d_Gamma_4_t_3*six_r_w_1_t_51 - six_r_d_Gamma_4_t_4*six_r_w_1_t_69 -
-        six_r_d_Gamma_4_t_5*six_r_w_1_t_81;
-    const real six_r_d_Gamma_4_in_axes5_z = v.six_r_J_5_t*m->six_r_h_5_in_spec5_x[i] +
-        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_y[i] + six_r_d_Gamma_4_t_2*six_r_w_1_t_30
-        + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 + six_r_d_Gamma_4_t_4*six_r_w_1_t_70 +
-        six_r_d_Gamma_4_t_5*six_r_w_1_t_82;
+    const real six_r_N_4_o_in_axes4_z = v->six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
+        v->six_r_J_5_t*six_r_mu_5_o_in_axes5_y + six_r_mu_4_o_in_axes4_z;
     /* (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
     const real six_r_mu_3_o_in_axes3_x = m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_o_t -
@@ -4716,80 +4068,35 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
        connection point left out */
     const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
         six_r_f_4_o_in_axes3_z*m->six_r_joint4_offset_x[i] +
-        six_r_N_4_o_in_axes4_y*v.six_r_h_4_t - six_r_N_4_o_in_axes4_x*v.six_r_e_2_in_axes5_z;
+        six_r_N_4_o_in_axes4_y*v->six_r_h_4_t -
+        six_r_N_4_o_in_axes4_x*v->six_r_e_2_in_axes5_z;
     const real six_r_N_3_o_in_axes3_y = six_r_mu_3_o_in_axes3_y + six_r_N_4_o_in_axes4_z;
     const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z -
         six_r_f_4_o_in_axes3_x*m->six_r_joint4_offset_x[i] +
-        six_r_N_4_o_in_axes4_y*v.six_r_e_2_in_axes5_z + six_r_N_4_o_in_axes4_x*v.six_r_h_4_t;
+        six_r_N_4_o_in_axes4_y*v->six_r_e_2_in_axes5_z +
+        six_r_N_4_o_in_axes4_x*v->six_r_h_4_t;
     /* (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
        */
     const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
     const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z;
     const real six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z;
-    /* (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
-       links' inertia and weight */
-    const real six_r_dalpha_Gamma_3_t = v.six_r_D_3_5*six_r_o_5_in_axes5_x;
-    const real six_r_dalpha_Gamma_3_t_2 = v.six_r_D_3_5*six_r_o_5_in_axes5_y;
-    const real six_r_dalpha_Gamma_3_t_3 = v.six_r_D_3_5*six_r_o_5_t;
-    const real six_r_dalpha_Gamma_3_in_axes5_x =
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_x - v.six_r_Jc_3_in_axes3_zz*six_r_o_3_t
-        - v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_t + six_r_dalpha_Gamma_3_t -
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_t;
-    const real six_r_dalpha_Gamma_3_in_axes5_y = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y
-        + v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y + six_r_dalpha_Gamma_3_t_2 +
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_Gamma_3_in_axes5_z = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z
-        + v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z -
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_t +
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
-    /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-       inertia and weight */
-    const real six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*v.six_r_D_3_5;
-    const real six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_15;
-    const real six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_3_in_axes3_z -
-        six_r_d_Gamma_3_t_5);
-    const real six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18;
-    const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(v.six_r_L_c_3_2_in_axes1_z -
-        six_r_d_Gamma_3_t_7 + six_r_d_Gamma_3_t_6*six_r_w_1_t_33);
-    const real six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_22;
-    const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(v.six_r_L_c_3_2_in_axes2_z -
-        six_r_d_Gamma_3_t_9 + six_r_d_Gamma_3_t_6*six_r_w_1_t_39 -
-        six_r_d_Gamma_3_t_8*six_r_w_1_t_55);
-    const real six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25;
-    const real six_r_d_Gamma_3_t_12 = inv_six_r_w_1_t_79*(v.six_r_Jc_3_in_axes3_zz +
-        six_r_d_Gamma_3_t_11 + six_r_d_Gamma_3_t_6*six_r_w_1_t_44 -
-        six_r_d_Gamma_3_t_8*six_r_w_1_t_61 - six_r_d_Gamma_3_t_10*six_r_w_1_t_73);
-    const real six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_13;
-    const real six_r_d_Gamma_3_in_axes5_x = v.six_r_d_Gamma_3_t +
-        six_r_d_Gamma_3_t_8*six_r_w_1_t_50 + six_r_d_Gamma_3_t_10*six_r_w_1_t_68 +
-        six_r_d_Gamma_3_t_12*six_r_w_1_t_80;
-    const real six_r_d_Gamma_3_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
-        six_r_d_Gamma_3_t_6*six_r_w_1_t_29 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51 -
-        six_r_d_Gamma_3_t_10*six_r_w_1_t_69 - six_r_d_Gamma_3_t_12*six_r_w_1_t_81;
-    const real six_r_d_Gamma_3_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
-        six_r_d_Gamma_3_t_6*six_r_w_1_t_30 + six_r_d_Gamma_3_t_8*six_r_w_1_t_52 +
-        six_r_d_Gamma_3_t_10*six_r_w_1_t_70 + six_r_d_Gamma_3_t_12*six_r_w_1_t_82;
     /* (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
-    const real six_r_mu_2_o_in_axes2_x = v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i] -
-        v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i] +
-        m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
+    const real six_r_mu_2_o_in_axes2_x = m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_o_t -
+        six_r_a_o_3_o_t_2) - v->six_r_mu_2_t +
         six_r_B_2_o_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] -
         m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_t +
         six_r_B_2_o_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] -
         six_r_B_2_o_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i];
-    const real six_r_mu_2_o_in_axes2_y = v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_x[i] -
-        v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_z[i] -
+    const real six_r_mu_2_o_in_axes2_y =
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_in_axes2_y - v->six_r_mu_2_t_2 -
         m->six_r_J_2_in_spec2_xz[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
         six_r_B_2_o_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] +
-        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_in_axes2_y +
         six_r_B_2_o_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] -
         six_r_B_2_o_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i];
-    const real six_r_mu_2_o_in_axes2_z = v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_y[i] -
-        v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_x[i] +
-        m->six_r_J_2_in_spec2_xy[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t) +
+    const real six_r_mu_2_o_in_axes2_z = m->six_r_J_2_in_spec2_xy[i]*(six_r_mu_2_o_t -
+        six_r_a_o_3_o_t) - v->six_r_mu_2_t_3 +
         six_r_B_2_o_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] -
         six_r_B_2_o_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] +
         m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_o_in_axes2_y -
@@ -4797,546 +4104,720 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     /* (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
-        six_r_N_3_o_in_axes3_x*v.six_r_s_3 + six_r_N_3_o_in_axes3_y*v.six_r_c_3;
+        six_r_N_3_o_in_axes3_x*v->six_r_s_3 + six_r_N_3_o_in_axes3_y*v->six_r_c_3;
     const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y -
         six_r_T_3_o_in_axes3_z*m->six_r_joint3_offset_x[i] +
-        six_r_N_3_o_in_axes3_y*v.six_r_s_3 - six_r_N_3_o_in_axes3_x*v.six_r_c_3;
+        six_r_N_3_o_in_axes3_y*v->six_r_s_3 - six_r_N_3_o_in_axes3_x*v->six_r_c_3;
     const real six_r_N_2_o_in_axes2_z = six_r_mu_2_o_in_axes2_z -
-        m->six_r_joint3_offset_x[i]*(six_r_T_3_o_in_axes3_x*v.six_r_c_3 -
-        six_r_T_3_o_in_axes3_y*v.six_r_s_3) + six_r_N_3_o_in_axes3_z;
-    /* (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-       links' inertia and weight */
-    const real six_r_dalpha_Gamma_2_in_axes5_x = v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x
-        - v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_t +
-        six_r_dalpha_Gamma_3_t - v.six_r_Jc_2_in_axes2_zz*six_r_o_2_t;
-    const real six_r_dalpha_Gamma_2_in_axes5_y = v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y
-        + v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y + six_r_dalpha_Gamma_3_t_2 +
-        v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_Gamma_2_in_axes5_z =
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - v.six_r_Jc_2_in_axes1_yz*six_r_o_1_t
-        + v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
-    /* (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
-    const real six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes2_z -
-        six_r_d_Gamma_3_t_5);
-    const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(v.six_r_Jc_2_in_axes1_yz -
-        six_r_d_Gamma_3_t_7 + six_r_d_Gamma_2_t*six_r_w_1_t_33);
-    const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes2_zz -
-        six_r_d_Gamma_3_t_9 + six_r_d_Gamma_2_t*six_r_w_1_t_39 -
-        six_r_d_Gamma_2_t_2*six_r_w_1_t_55);
-    const real six_r_d_Gamma_2_t_4 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes2_z +
-        six_r_d_Gamma_3_t_11 + six_r_d_Gamma_2_t*six_r_w_1_t_44 -
-        six_r_d_Gamma_2_t_2*six_r_w_1_t_61 - six_r_d_Gamma_2_t_3*six_r_w_1_t_73);
-    const real six_r_d_Gamma_2_in_axes5_x = v.six_r_d_Gamma_3_t +
-        six_r_d_Gamma_2_t_2*six_r_w_1_t_50 + six_r_d_Gamma_2_t_3*six_r_w_1_t_68 +
-        six_r_d_Gamma_2_t_4*six_r_w_1_t_80;
-    const real six_r_d_Gamma_2_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
-        six_r_d_Gamma_2_t*six_r_w_1_t_29 - six_r_d_Gamma_2_t_2*six_r_w_1_t_51 -
-        six_r_d_Gamma_2_t_3*six_r_w_1_t_69 - six_r_d_Gamma_2_t_4*six_r_w_1_t_81;
-    const real six_r_d_Gamma_2_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
-        six_r_d_Gamma_2_t*six_r_w_1_t_30 + six_r_d_Gamma_2_t_2*six_r_w_1_t_52 +
-        six_r_d_Gamma_2_t_3*six_r_w_1_t_70 + six_r_d_Gamma_2_t_4*six_r_w_1_t_82;
+        m->six_r_joint3_offset_x[i]*(six_r_T_3_o_in_axes3_x*v->six_r_c_3 -
+        six_r_T_3_o_in_axes3_y*v->six_r_s_3) + six_r_N_3_o_in_axes3_z;
     /* (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real six_r_mu_1_o_in_axes1_z = v.six_r_g_in_axes1_x*m->six_r_h_1_in_spec1_z[i] -
-        v.six_r_g_in_axes1_y*m->six_r_h_1_in_spec1_y[i] -
+    const real six_r_mu_1_o_in_axes1_z = -v->six_r_mu_1_t -
         m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_o_t_5;
     /* (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
-        six_r_N_2_o_in_axes2_x*v.six_r_c_2 - six_r_N_2_o_in_axes2_y*v.six_r_s_2;
-    /* (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-       links' inertia and weight */
-    const real six_r_dalpha_Gamma_1_in_axes5_x = v.six_r_D_1_5*six_r_o_5_in_axes5_x +
-        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_t
-        - v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_t - v.six_r_Jc_2_in_axes1_yz*six_r_o_2_t;
-    const real six_r_dalpha_Gamma_1_in_axes5_y = v.six_r_D_1_5*six_r_o_5_in_axes5_y +
-        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y +
-        v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_Gamma_1_in_axes5_z =
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
-        v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_5_t -
-        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_t + v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z;
-    /* (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
-    const real six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*v.six_r_D_1_5;
-    const real six_r_d_Gamma_1_t_2 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes1_z -
-        six_r_d_Gamma_1_t*six_r_w_1_t_15);
-    const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(v.six_r_Jc_1_in_axes1_zz -
-        six_r_d_Gamma_1_t*six_r_w_1_t_18 + six_r_d_Gamma_1_t_2*six_r_w_1_t_33);
-    const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes1_yz -
-        six_r_d_Gamma_1_t*six_r_w_1_t_22 + six_r_d_Gamma_1_t_2*six_r_w_1_t_39 -
-        six_r_d_Gamma_1_t_3*six_r_w_1_t_55);
-    const real six_r_d_Gamma_1_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes1_z +
-        six_r_d_Gamma_1_t*six_r_w_1_t_25 + six_r_d_Gamma_1_t_2*six_r_w_1_t_44 -
-        six_r_d_Gamma_1_t_3*six_r_w_1_t_61 - six_r_d_Gamma_1_t_4*six_r_w_1_t_73);
-    const real six_r_d_Gamma_1_in_axes5_x = v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_z[i]
-        - v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_y[i] +
-        six_r_d_Gamma_1_t_3*six_r_w_1_t_50 + six_r_d_Gamma_1_t_4*six_r_w_1_t_68 +
-        six_r_d_Gamma_1_t_5*six_r_w_1_t_80;
-    const real six_r_d_Gamma_1_in_axes5_y = v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_x[i]
-        - v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_z[i] + six_r_d_Gamma_1_t*six_r_w_1_t_13
-        - six_r_d_Gamma_1_t_2*six_r_w_1_t_29 - six_r_d_Gamma_1_t_3*six_r_w_1_t_51 -
-        six_r_d_Gamma_1_t_4*six_r_w_1_t_69 - six_r_d_Gamma_1_t_5*six_r_w_1_t_81;
-    const real six_r_d_Gamma_1_in_axes5_z = v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_y[i]
-        - v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_x[i] +
-        six_r_d_Gamma_1_t_2*six_r_w_1_t_30 + six_r_d_Gamma_1_t_3*six_r_w_1_t_52 +
-        six_r_d_Gamma_1_t_4*six_r_w_1_t_70 + six_r_d_Gamma_1_t_5*six_r_w_1_t_82;
-    /* (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real six_r_dalpha_G_m1_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m1_w_2 +
-        six_r_dalpha_Gamma_3_in_axes5_x*six_r_m1_w_3 +
-        six_r_dalpha_Gamma_4_in_axes5_x*six_r_m1_w_4 -
-        six_r_dalpha_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2 -
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_m1_w_5_t;
-    const real six_r_dalpha_G_m1_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m1_w_2 +
-        six_r_dalpha_Gamma_3_in_axes5_y*six_r_m1_w_3 +
-        six_r_dalpha_Gamma_4_in_axes5_y*six_r_m1_w_4 -
-        six_r_dalpha_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2 -
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_m1_w_5_t;
-    const real six_r_dalpha_G_m1_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m1_w_2 +
-        six_r_dalpha_Gamma_3_in_axes5_z*six_r_m1_w_3 +
-        six_r_dalpha_Gamma_4_in_axes5_z*six_r_m1_w_4 -
-        six_r_dalpha_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2 -
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_m1_w_5_t;
-    const real six_r_dalpha_G_m1_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_x +
-        axis_y_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_y +
-        axis_z_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_z;
-    const real six_r_dalpha_G_m1_z = axis_x_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_x +
-        axis_y_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_y +
-        axis_z_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_z;
-    /* (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real six_r_d_G_m1_in_axes5_x = six_r_d_Gamma_3_in_axes5_x*six_r_m1_w_3 +
-        six_r_d_Gamma_4_in_axes5_x*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2
-        - six_r_d_Gamma_5_in_axes5_x*six_r_m1_w_5_t + six_r_d_Gamma_2_in_axes5_x*six_r_m1_w_2;
-    const real six_r_d_G_m1_in_axes5_y = six_r_d_Gamma_3_in_axes5_y*six_r_m1_w_3 +
-        six_r_d_Gamma_4_in_axes5_y*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2
-        - six_r_d_Gamma_5_in_axes5_y*six_r_m1_w_5_t + six_r_d_Gamma_2_in_axes5_y*six_r_m1_w_2;
-    const real six_r_d_G_m1_in_axes5_z = six_r_d_Gamma_3_in_axes5_z*six_r_m1_w_3 +
-        six_r_d_Gamma_4_in_axes5_z*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2
-        - six_r_d_Gamma_5_in_axes5_z*six_r_m1_w_5_t + six_r_d_Gamma_2_in_axes5_z*six_r_m1_w_2;
-    const real six_r_d_G_m1_x = axis_x_six_r_axes5_x*six_r_d_G_m1_in_axes5_x +
-        axis_y_six_r_axes5_x*six_r_d_G_m1_in_axes5_y +
-        axis_z_six_r_axes5_x*six_r_d_G_m1_in_axes5_z;
-    const real six_r_d_G_m1_y = axis_x_six_r_axes5_y*six_r_d_G_m1_in_axes5_x +
-        axis_y_six_r_axes5_y*six_r_d_G_m1_in_axes5_y +
-        axis_z_six_r_axes5_y*six_r_d_G_m1_in_axes5_z;
-    const real six_r_d_G_m1_z = axis_x_six_r_axes5_z*six_r_d_G_m1_in_axes5_x +
-        axis_y_six_r_axes5_z*six_r_d_G_m1_in_axes5_y +
-        axis_z_six_r_axes5_z*six_r_d_G_m1_in_axes5_z;
+        six_r_N_2_o_in_axes2_x*v->six_r_c_2 - six_r_N_2_o_in_axes2_y*v->six_r_s_2;
     /* (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia
        and weight along all degrees of freedom */
-    const real six_r_G_m1_o_t = inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z;
-    const real six_r_G_m1_o_t_2 = inv_six_r_w_1_t_28*(six_r_G_m1_o_t*six_r_w_1_t_15 -
+    const real six_r_G_m1_o_t = v->inv_six_r_w_1_t_8*six_r_mu_5_o_in_axes5_z;
+    const real six_r_G_m1_o_t_2 = v->inv_six_r_w_1_t_24*(six_r_G_m1_o_t*v->six_r_w_1_t_11 -
         six_r_N_4_o_in_axes4_z);
-    const real six_r_G_m1_o_t_3 = inv_six_r_w_1_t_49*(six_r_G_m1_o_t*six_r_w_1_t_18 +
-        six_r_G_m1_o_t_2*six_r_w_1_t_33 - six_r_N_1_o_in_axes1_z);
-    const real six_r_G_m1_o_t_4 = inv_six_r_w_1_t_67*(six_r_G_m1_o_t*six_r_w_1_t_22 +
-        six_r_G_m1_o_t_2*six_r_w_1_t_39 - six_r_N_2_o_in_axes2_z -
-        six_r_G_m1_o_t_3*six_r_w_1_t_55);
-    const real six_r_G_m1_o_t_5 = inv_six_r_w_1_t_79*(six_r_G_m1_o_t*six_r_w_1_t_25 +
-        six_r_N_3_o_in_axes3_z - six_r_G_m1_o_t_2*six_r_w_1_t_44 +
-        six_r_G_m1_o_t_3*six_r_w_1_t_61 + six_r_G_m1_o_t_4*six_r_w_1_t_73);
-    const real six_r_G_m1_o_t_6 = m->six_r_size[i]*(six_r_G_m1_o_t_2*six_r_w_1_t_31 +
-        six_r_G_m1_o_t_3*six_r_w_1_t_53 + six_r_G_m1_o_t_4*six_r_w_1_t_71 -
-        six_r_G_m1_o_t_5*six_r_m1_w_1_t);
-    /* (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real six_r_dalpha_G_m2_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
-        six_r_dalpha_Gamma_3_in_axes5_x*six_r_m2_w_3 +
-        six_r_dalpha_Gamma_4_in_axes5_x*six_r_m2_w_4 -
-        six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
-    const real six_r_dalpha_G_m2_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
-        six_r_dalpha_Gamma_3_in_axes5_y*six_r_m2_w_3 +
-        six_r_dalpha_Gamma_4_in_axes5_y*six_r_m2_w_4 -
-        six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
-    const real six_r_dalpha_G_m2_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
-        six_r_dalpha_Gamma_3_in_axes5_z*six_r_m2_w_3 +
-        six_r_dalpha_Gamma_4_in_axes5_z*six_r_m2_w_4 -
-        six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
-    const real six_r_dalpha_G_m2_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_x +
-        axis_y_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_z;
-    const real six_r_dalpha_G_m2_z = axis_x_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_x +
-        axis_y_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_z;
-    /* (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 +
-        six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2
-        - six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t + six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2;
-    const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 +
-        six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2
-        - six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t + six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2;
-    const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 +
-        six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2
-        - six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t + six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2;
-    const real six_r_d_G_m2_x = axis_x_six_r_axes5_x*six_r_d_G_m2_in_axes5_x +
-        axis_y_six_r_axes5_x*six_r_d_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_x*six_r_d_G_m2_in_axes5_z;
-    const real six_r_d_G_m2_y = axis_x_six_r_axes5_y*six_r_d_G_m2_in_axes5_x +
-        axis_y_six_r_axes5_y*six_r_d_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_y*six_r_d_G_m2_in_axes5_z;
-    const real six_r_d_G_m2_z = axis_x_six_r_axes5_z*six_r_d_G_m2_in_axes5_x +
-        axis_y_six_r_axes5_z*six_r_d_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_z*six_r_d_G_m2_in_axes5_z;
+    const real six_r_G_m1_o_t_3 = v->inv_six_r_w_1_t_45*(six_r_G_m1_o_t*v->six_r_w_1_t_14 +
+        six_r_G_m1_o_t_2*v->six_r_w_1_t_29 - six_r_N_1_o_in_axes1_z);
+    const real six_r_G_m1_o_t_4 = v->inv_six_r_w_1_t_63*(six_r_G_m1_o_t*v->six_r_w_1_t_18 +
+        six_r_G_m1_o_t_2*v->six_r_w_1_t_35 - six_r_N_2_o_in_axes2_z -
+        six_r_G_m1_o_t_3*v->six_r_w_1_t_51);
+    const real six_r_G_m1_o_t_5 = v->inv_six_r_w_1_t_75*(six_r_G_m1_o_t*v->six_r_w_1_t_21 +
+        six_r_N_3_o_in_axes3_z - six_r_G_m1_o_t_2*v->six_r_w_1_t_40 +
+        six_r_G_m1_o_t_3*v->six_r_w_1_t_57 + six_r_G_m1_o_t_4*v->six_r_w_1_t_69);
+    const real six_r_G_m1_o_t_6 = m->six_r_size[i]*(six_r_G_m1_o_t_2*v->six_r_w_1_t_27 +
+        six_r_G_m1_o_t_3*v->six_r_w_1_t_49 + six_r_G_m1_o_t_4*v->six_r_w_1_t_67 -
+        six_r_G_m1_o_t_5*v->six_r_m1_w_1_t);
     /* (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia
        and weight along all degrees of freedom */
-    const real six_r_G_m2_o_t = m->six_r_size[i]*(six_r_G_m1_o_t_2*six_r_w_1_t_32 -
-        six_r_G_m1_o_t*six_r_w_1_t_14 + six_r_G_m1_o_t_3*six_r_w_1_t_54 +
-        six_r_G_m1_o_t_4*six_r_w_1_t_72 - six_r_G_m1_o_t_5*six_r_m2_w_1_t);
-    /* (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real six_r_d_G_m_xx = six_r_d_G_m1_x*six_r_n_m1_x + six_r_d_G_m2_x*six_r_n_m2_x;
-    const real six_r_d_G_m_xy = six_r_d_G_m1_y*six_r_n_m1_x + six_r_d_G_m2_y*six_r_n_m2_x;
-    const real six_r_d_G_m_xz = six_r_d_G_m1_z*six_r_n_m1_x + six_r_d_G_m2_z*six_r_n_m2_x;
-    const real six_r_d_G_m_yx = six_r_d_G_m1_x*six_r_n_m1_y + six_r_d_G_m2_x*six_r_n_m2_y;
+    const real six_r_G_m2_o_t = m->six_r_size[i]*(six_r_G_m1_o_t_2*v->six_r_w_1_t_28 -
+        six_r_G_m1_o_t*v->six_r_w_1_t_10 + six_r_G_m1_o_t_3*v->six_r_w_1_t_50 +
+        six_r_G_m1_o_t_4*v->six_r_w_1_t_68 - six_r_G_m1_o_t_5*v->six_r_m2_w_1_t);
     /* (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
-    const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*six_r_end_p1_in_axes5_y;
-    const real six_r_G_m_o_in_axes5_y = six_r_G_m2_o_t*six_r_end_p1_in_axes5_z -
-        six_r_G_m1_o_t_6*six_r_n_m1_in_axes5_y;
-    /* (six_r-dalpha_c) coefficient of the acceleration in: leg force on the platform without
-       actuation and without the mass at the connection point */
-    const real six_r_dalpha_c_in_axes5_xx =
-        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_y[i] -
-        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_z[i] +
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
-        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
-        six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
-        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
-        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x;
-    const real six_r_dalpha_c_in_axes5_xy =
-        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
-        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_z[i] +
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_t_5 -
-        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
-        six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
-        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
-        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x;
-    const real six_r_dalpha_c_in_axes5_xz =
-        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
-        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] +
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_t_5 -
-        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
-        six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
-        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
-        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x;
-    const real six_r_dalpha_c_in_axes5_yx =
-        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_z[i] -
-        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] +
-        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_t -
-        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_y -
-        six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_y -
-        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_y -
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_y;
-    const real six_r_dalpha_c_in_axes5_yy =
-        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_z[i] -
-        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i] +
-        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_t -
-        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
-        six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
-        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y;
-    const real six_r_dalpha_c_in_axes5_yz =
-        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
-        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i] +
-        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_t -
-        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
-        six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
-        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y;
-    const real six_r_dalpha_c_in_axes5_zx =
-        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
-        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_y[i] -
-        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_z -
-        six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_z -
-        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_z -
-        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_z -
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_z;
-    const real six_r_dalpha_c_in_axes5_zy =
-        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_x[i] -
-        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
-        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_z -
-        six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_z -
-        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_z -
-        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_z -
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_z;
-    const real six_r_dalpha_c_in_axes5_zz =
-        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i] -
-        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i] -
-        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z -
-        six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z -
-        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z -
-        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z -
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z;
-    /* (six_r-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real six_r_d_c_in_axes5_xx = six_r_d_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
-        six_r_d_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
-        six_r_d_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
-        six_r_d_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x -
-        six_r_d_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x - six_r_d_phi_5_in_axes5_xx;
-    const real six_r_d_c_in_axes5_xy = six_r_d_Gamma_5_in_axes5_y*six_r_w_5_t_5 -
-        six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
-        six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
-        six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
-        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x +
-        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
-        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y -
-        v.six_r_J_5_t*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_y*six_r_w_3_t +
-        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y);
-    const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 -
-        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
-        six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
-        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
-        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x +
-        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
-        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_d_c_in_axes5_yy = six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t -
-        six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
-        six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
-        six_r_d_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
-        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y +
-        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
-        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_x*six_r_w_3_t +
-        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y) -
-        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i];
-    const real six_r_d_c_in_axes5_yz = six_r_d_Gamma_3_in_axes5_z*six_r_w_3_t -
-        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
-        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
-        six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
-        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y +
-        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
-        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*v->six_r_end_p1_in_axes5_y;
+    const real six_r_G_m_o_in_axes5_y = six_r_G_m2_o_t*v->six_r_end_p1_in_axes5_z -
+        six_r_G_m1_o_t_6*v->six_r_n_m1_in_axes5_y;
     /* (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at
        the connection point */
     const real six_r_c_o_in_axes5_x = six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
         six_r_B_5_o_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
-        six_r_B_5_o_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] + six_r_G_m1_o_t_3*six_r_w_1_t_50 +
-        six_r_G_m1_o_t_4*six_r_w_1_t_68 - six_r_G_m1_o_t_5*six_r_w_1_t_80;
+        six_r_B_5_o_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] +
+        six_r_G_m1_o_t_3*v->six_r_w_1_t_46 + six_r_G_m1_o_t_4*v->six_r_w_1_t_64 -
+        six_r_G_m1_o_t_5*v->six_r_w_1_t_76;
     const real six_r_c_o_in_axes5_y = m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 +
         six_r_bias_t_2) - six_r_B_5_o_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_o_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_o_t*six_r_w_1_t_13 -
-        six_r_G_m1_o_t_2*six_r_w_1_t_29 - six_r_G_m1_o_t_3*six_r_w_1_t_51 -
-        six_r_G_m1_o_t_4*six_r_w_1_t_69 + six_r_G_m1_o_t_5*six_r_w_1_t_81;
+        six_r_B_5_o_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_o_t*v->six_r_w_1_t_9 -
+        six_r_G_m1_o_t_2*v->six_r_w_1_t_25 - six_r_G_m1_o_t_3*v->six_r_w_1_t_47 -
+        six_r_G_m1_o_t_4*v->six_r_w_1_t_65 + six_r_G_m1_o_t_5*v->six_r_w_1_t_77;
     const real six_r_c_o_in_axes5_z = m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t +
         six_r_bias_t_2) - six_r_B_5_o_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_o_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] + six_r_G_m1_o_t_2*six_r_w_1_t_30 +
-        six_r_G_m1_o_t_3*six_r_w_1_t_52 + six_r_G_m1_o_t_4*six_r_w_1_t_70 -
-        six_r_G_m1_o_t_5*six_r_w_1_t_82;
-    /* (six_r-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real six_r_Q_t = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy;
-    const real six_r_Q_t_2 = R(0.5)*six_r_Q_t;
-    const real six_r_Q_t_3 = six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
-        six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z +
-        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z +
-        six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z +
-        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z +
-        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i] -
-        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i] + six_r_d_c_in_axes5_xx;
-    const real six_r_Q_t_4 = R(0.5)*six_r_Q_t_3;
-    const real six_r_Q_t_5 = axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xy +
-        axis_z_six_r_axes5_x*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_x*six_r_Q_t_2;
-    const real six_r_Q_t_6 = axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xy +
-        axis_z_six_r_axes5_y*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_y*six_r_Q_t_2;
-    const real six_r_Q_t_7 = axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xy +
-        axis_z_six_r_axes5_z*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_z*six_r_Q_t_2;
-    const real six_r_Q_t_8 = axis_z_six_r_axes5_x*six_r_Q_t_4 -
-        axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xz;
-    const real six_r_Q_t_9 = axis_z_six_r_axes5_y*six_r_Q_t_4 -
-        axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xz;
-    const real six_r_Q_t_10 = axis_z_six_r_axes5_z*six_r_Q_t_4 -
-        axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xz;
-    const real six_r_Q_t_11 = axis_y_six_r_axes5_x*six_r_Q_t_5 -
-        axis_z_six_r_axes5_x*six_r_Q_t_8;
-    const real six_r_Q_xx = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_11;
-    const real six_r_Q_xy = axis_z_six_r_axes5_x*six_r_Q_t_9 +
-        axis_z_six_r_axes5_y*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_6 -
-        axis_y_six_r_axes5_y*six_r_Q_t_5;
-    const real six_r_Q_xz = axis_z_six_r_axes5_x*six_r_Q_t_10 +
-        axis_z_six_r_axes5_z*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_7 -
-        axis_y_six_r_axes5_z*six_r_Q_t_5;
-    const real six_r_Q_t_12 = axis_y_six_r_axes5_y*six_r_Q_t_6 -
-        axis_z_six_r_axes5_y*six_r_Q_t_9;
-    const real six_r_Q_yy = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_12;
-    const real six_r_Q_yz = axis_z_six_r_axes5_y*six_r_Q_t_10 +
-        axis_z_six_r_axes5_z*six_r_Q_t_9 - axis_y_six_r_axes5_y*six_r_Q_t_7 -
-        axis_y_six_r_axes5_z*six_r_Q_t_6;
-    const real six_r_Q_t_13 = axis_y_six_r_axes5_z*six_r_Q_t_7 -
-        axis_z_six_r_axes5_z*six_r_Q_t_10;
-    const real six_r_Q_zz = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_13;
+        six_r_B_5_o_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] +
+        six_r_G_m1_o_t_2*v->six_r_w_1_t_26 + six_r_G_m1_o_t_3*v->six_r_w_1_t_48 +
+        six_r_G_m1_o_t_4*v->six_r_w_1_t_66 - six_r_G_m1_o_t_5*v->six_r_w_1_t_78;
     /* (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation */
-    const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*six_r_end_p1_in_axes5_y;
+    const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*v->six_r_end_p1_in_axes5_y;
     /* (six_r-U) velocity and gravity terms of the leg force */
-    const real six_r_U_x = -axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x -
-        axis_y_six_r_axes5_x*six_r_c_o_in_axes5_y - axis_z_six_r_axes5_x*six_r_c_o_in_axes5_z;
-    const real six_r_U_y = -axis_x_six_r_axes5_y*six_r_c_o_in_axes5_x -
-        axis_y_six_r_axes5_y*six_r_c_o_in_axes5_y - axis_z_six_r_axes5_y*six_r_c_o_in_axes5_z;
-    const real six_r_U_z = -axis_x_six_r_axes5_z*six_r_c_o_in_axes5_x -
-        axis_y_six_r_axes5_z*six_r_c_o_in_axes5_y - axis_z_six_r_axes5_z*six_r_c_o_in_axes5_z;
-    /* (M_ta) coupling block of M */
-    const real six_r_M_ta_t = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xx +
-        axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yx +
-        axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zx;
-    const real six_r_M_ta_t_2 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xx +
-        axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yx +
-        axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zx;
-    const real six_r_M_ta_t_3 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xx +
-        axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yx +
-        axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zx;
-    const real six_r_M_ta_t_4 = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xy +
-        axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yy +
-        axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zy;
-    const real six_r_M_ta_t_5 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xy +
-        axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yy +
-        axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zy;
-    const real six_r_M_ta_t_6 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xy +
-        axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yy +
-        axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zy;
-    const real six_r_M_ta_t_7 = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xz +
-        axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yz +
-        axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zz;
-    const real six_r_M_ta_t_8 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xz +
-        axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yz +
-        axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zz;
-    const real six_r_M_ta_t_9 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xz +
-        axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
-        axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz;
-    const real six_r_M_ta_t_10 = -six_r_Q_xy*v.six_r_q_z;
-    const real six_r_M_ta_t_11 = six_r_Q_xz*v.six_r_q_y;
-    const real six_r_M_ta_t_12 = six_r_Q_yz*v.six_r_q_x;
-    const real six_r_M_ta_t_13 = six_r_M_ta_t_10 + six_r_M_ta_t_11 -
-        axis_x_six_r_axes5_x*six_r_M_ta_t - axis_y_six_r_axes5_x*six_r_M_ta_t_4 -
-        axis_z_six_r_axes5_x*six_r_M_ta_t_7;
-    const real six_r_M_ta_t_14 = six_r_Q_xx*v.six_r_q_z - six_r_Q_xz*v.six_r_q_x -
-        axis_x_six_r_axes5_y*six_r_M_ta_t - axis_y_six_r_axes5_y*six_r_M_ta_t_4 -
-        axis_z_six_r_axes5_y*six_r_M_ta_t_7;
-    const real six_r_M_ta_t_15 = six_r_Q_xy*v.six_r_q_x - six_r_Q_xx*v.six_r_q_y -
-        axis_x_six_r_axes5_z*six_r_M_ta_t - axis_y_six_r_axes5_z*six_r_M_ta_t_4 -
-        axis_z_six_r_axes5_z*six_r_M_ta_t_7;
-    const real six_r_M_ta_t_16 = six_r_Q_yz*v.six_r_q_y - six_r_Q_yy*v.six_r_q_z -
-        axis_x_six_r_axes5_x*six_r_M_ta_t_2 - axis_y_six_r_axes5_x*six_r_M_ta_t_5 -
-        axis_z_six_r_axes5_x*six_r_M_ta_t_8;
-    const real six_r_M_ta_t_17 = six_r_M_ta_t_10 + six_r_M_ta_t_12 +
-        axis_x_six_r_axes5_y*six_r_M_ta_t_2 + axis_y_six_r_axes5_y*six_r_M_ta_t_5 +
-        axis_z_six_r_axes5_y*six_r_M_ta_t_8;
-    const real six_r_M_ta_t_18 = six_r_Q_yy*v.six_r_q_x - six_r_Q_xy*v.six_r_q_y -
-        axis_x_six_r_axes5_z*six_r_M_ta_t_2 - axis_y_six_r_axes5_z*six_r_M_ta_t_5 -
-        axis_z_six_r_axes5_z*six_r_M_ta_t_8;
-    const real six_r_M_ta_t_19 = six_r_Q_zz*v.six_r_q_y - six_r_Q_yz*v.six_r_q_z -
-        axis_x_six_r_axes5_x*six_r_M_ta_t_3 - axis_y_six_r_axes5_x*six_r_M_ta_t_6 -
-        axis_z_six_r_axes5_x*six_r_M_ta_t_9;
-    const real six_r_M_ta_t_20 = six_r_Q_xz*v.six_r_q_z - six_r_Q_zz*v.six_r_q_x -
-        axis_x_six_r_axes5_y*six_r_M_ta_t_3 - axis_y_six_r_axes5_y*six_r_M_ta_t_6 -
-        axis_z_six_r_axes5_y*six_r_M_ta_t_9;
-    const real six_r_M_ta_t_21 = six_r_M_ta_t_12 - six_r_M_ta_t_11 -
-        axis_x_six_r_axes5_z*six_r_M_ta_t_3 - axis_y_six_r_axes5_z*six_r_M_ta_t_6 -
-        axis_z_six_r_axes5_z*six_r_M_ta_t_9;
-    /* (M_aa) rotational block of M */
-    const real six_r_M_aa_t = six_r_d_G_m_xz*v.six_r_q_y - six_r_d_G_m_xy*v.six_r_q_z +
-        six_r_n_m1_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_x +
-        axis_y_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_y +
-        axis_z_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_z) +
-        six_r_n_m2_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_x +
-        axis_y_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) + six_r_M_ta_t_19*v.six_r_q_y -
-        six_r_M_ta_t_16*v.six_r_q_z;
-    const real six_r_M_aa_t_2 = six_r_d_G_m_xx*v.six_r_q_z - six_r_d_G_m_xz*v.six_r_q_x +
-        six_r_dalpha_G_m1_y*six_r_n_m1_x + six_r_dalpha_G_m2_y*six_r_n_m2_x +
-        six_r_M_ta_t_17*v.six_r_q_z + six_r_M_ta_t_20*v.six_r_q_y;
-    const real six_r_M_aa_t_3 = six_r_d_G_m_xy*v.six_r_q_x - six_r_d_G_m_xx*v.six_r_q_y +
-        six_r_dalpha_G_m1_z*six_r_n_m1_x + six_r_dalpha_G_m2_z*six_r_n_m2_x +
-        six_r_M_ta_t_21*v.six_r_q_y - six_r_M_ta_t_18*v.six_r_q_z;
-    const real six_r_M_aa_t_4 = six_r_d_G_m_yx*v.six_r_q_z -
-        v.six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y + six_r_d_G_m2_z*six_r_n_m2_y) +
-        six_r_dalpha_G_m1_y*six_r_n_m1_y + six_r_dalpha_G_m2_y*six_r_n_m2_y +
-        six_r_M_ta_t_14*v.six_r_q_z - six_r_M_ta_t_20*v.six_r_q_x;
-    const real six_r_M_aa_t_5 = v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
-        six_r_d_G_m2_y*six_r_n_m2_y) - six_r_d_G_m_yx*v.six_r_q_y +
-        six_r_dalpha_G_m1_z*six_r_n_m1_y + six_r_dalpha_G_m2_z*six_r_n_m2_y +
-        six_r_M_ta_t_15*v.six_r_q_z - six_r_M_ta_t_21*v.six_r_q_x;
-    const real six_r_M_aa_t_6 = v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
-        six_r_d_G_m2_y*six_r_n_m2_z) - v.six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z +
-        six_r_d_G_m2_x*six_r_n_m2_z) + six_r_dalpha_G_m1_z*six_r_n_m1_z +
-        six_r_dalpha_G_m2_z*six_r_n_m2_z + six_r_M_ta_t_18*v.six_r_q_x -
-        six_r_M_ta_t_15*v.six_r_q_y;
+    v->six_r_U_x = -v->axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x -
+        v->axis_y_six_r_axes5_x*six_r_c_o_in_axes5_y -
+        v->axis_z_six_r_axes5_x*six_r_c_o_in_axes5_z;
+    v->six_r_U_y = -v->axis_x_six_r_axes5_y*six_r_c_o_in_axes5_x -
+        v->axis_y_six_r_axes5_y*six_r_c_o_in_axes5_y -
+        v->axis_z_six_r_axes5_y*six_r_c_o_in_axes5_z;
+    v->six_r_U_z = -v->axis_x_six_r_axes5_z*six_r_c_o_in_axes5_x -
+        v->axis_y_six_r_axes5_z*six_r_c_o_in_axes5_y -
+        v->axis_z_six_r_axes5_z*six_r_c_o_in_axes5_z;
     /* (Z_a) rotational part of Z */
-    const real six_r_Z_a_t = axis_x_six_r_axes5_x*six_r_G_m_o_in_axes5_x +
-        axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + six_r_U_z*v.six_r_q_y -
-        axis_z_six_r_axes5_x*six_r_c_m_o_in_axes5_z - six_r_U_y*v.six_r_q_z;
-    const real six_r_Z_a_t_2 = axis_x_six_r_axes5_y*six_r_G_m_o_in_axes5_x +
-        axis_y_six_r_axes5_y*six_r_G_m_o_in_axes5_y + six_r_U_x*v.six_r_q_z -
-        axis_z_six_r_axes5_y*six_r_c_m_o_in_axes5_z - six_r_U_z*v.six_r_q_x;
-    const real six_r_Z_a_t_3 = axis_x_six_r_axes5_z*six_r_G_m_o_in_axes5_x +
-        axis_y_six_r_axes5_z*six_r_G_m_o_in_axes5_y + six_r_U_y*v.six_r_q_x -
-        axis_z_six_r_axes5_z*six_r_c_m_o_in_axes5_z - six_r_U_x*v.six_r_q_y;
-    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-    const real six_r_H_a_2_x = six_r_o_2_x + v.six_r_q_y*six_r_w_2_z -
-        v.six_r_q_z*six_r_w_2_y;
-    const real six_r_H_a_2_y = six_r_o_2_y + v.six_r_q_z*six_r_w_2_x -
-        v.six_r_q_x*six_r_w_2_z;
-    const real six_r_H_a_2_z = six_r_o_2_z + v.six_r_q_x*six_r_w_2_y -
-        v.six_r_q_y*six_r_w_2_x;
+    v->six_r_Z_a_t = v->axis_x_six_r_axes5_x*six_r_G_m_o_in_axes5_x +
+        v->axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + v->six_r_U_z*v->six_r_q_y -
+        v->axis_z_six_r_axes5_x*six_r_c_m_o_in_axes5_z - v->six_r_U_y*v->six_r_q_z;
+    v->six_r_Z_a_t_2 = v->axis_x_six_r_axes5_y*six_r_G_m_o_in_axes5_x +
+        v->axis_y_six_r_axes5_y*six_r_G_m_o_in_axes5_y + v->six_r_U_x*v->six_r_q_z -
+        v->axis_z_six_r_axes5_y*six_r_c_m_o_in_axes5_z - v->six_r_U_z*v->six_r_q_x;
+    v->six_r_Z_a_t_3 = v->axis_x_six_r_axes5_z*six_r_G_m_o_in_axes5_x +
+        v->axis_y_six_r_axes5_z*six_r_G_m_o_in_axes5_y + v->six_r_U_y*v->six_r_q_x -
+        v->axis_z_six_r_axes5_z*six_r_c_m_o_in_axes5_z - v->six_r_U_x*v->six_r_q_y;
+}
+
+INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r *v)
+{
+    /* (six_r-o_2) moment part of reciprocal wrench 2 */
+    v->six_r_o_2_x_2 = v->axis_y_six_r_axes5_x*v->six_r_o_2_in_axes5_y +
+        v->axis_z_six_r_axes5_x*v->six_r_o_2_in_axes5_z -
+        v->axis_x_six_r_axes5_x*v->six_r_o_2_t;
+    v->six_r_o_2_y_2 = v->axis_y_six_r_axes5_y*v->six_r_o_2_in_axes5_y +
+        v->axis_z_six_r_axes5_y*v->six_r_o_2_in_axes5_z -
+        v->axis_x_six_r_axes5_y*v->six_r_o_2_t;
+    v->six_r_o_2_z_2 = v->axis_y_six_r_axes5_z*v->six_r_o_2_in_axes5_y +
+        v->axis_z_six_r_axes5_z*v->six_r_o_2_in_axes5_z -
+        v->axis_x_six_r_axes5_z*v->six_r_o_2_t;
+    /* (six_r-W_2) centripetal tensor of link 2 */
+    const real six_r_W_2_in_axes2_xy_2 =
+        v->six_r_omega_1_in_axes2_x_2*v->six_r_omega_1_in_axes2_y_2;
+    /* (six_r-W_3) centripetal tensor of link 3 */
+    const real six_r_W_3_t_4 = v->six_r_omega_2_in_axes3_x_2*v->six_r_omega_2_in_axes3_x_2;
+    const real six_r_W_3_t_5 = v->six_r_omega_3_in_axes3_z_2*v->six_r_omega_3_in_axes3_z_2;
+    const real six_r_W_3_in_axes3_xy_2 =
+        v->six_r_omega_2_in_axes3_x_2*v->six_r_omega_2_in_axes3_y_2;
+    const real six_r_W_3_in_axes3_xz_2 =
+        v->six_r_omega_2_in_axes3_x_2*v->six_r_omega_3_in_axes3_z_2;
+    const real six_r_W_3_t_6 = six_r_W_3_t_5 + six_r_W_3_t_4;
+    const real six_r_W_3_in_axes3_yz_2 =
+        v->six_r_omega_2_in_axes3_y_2*v->six_r_omega_3_in_axes3_z_2;
+    /* (six_r-W_4) centripetal tensor of link 4 */
+    const real six_r_W_4_in_axes4_xy_2 =
+        v->six_r_omega_3_in_axes4_x_2*v->six_r_omega_3_in_axes4_y_2;
+    const real six_r_W_4_in_axes4_xz_2 =
+        v->six_r_omega_3_in_axes4_x_2*v->six_r_omega_4_in_axes4_z_2;
+    const real six_r_W_4_in_axes4_yz_2 =
+        v->six_r_omega_3_in_axes4_y_2*v->six_r_omega_4_in_axes4_z_2;
+    /* (six_r-W_5) centripetal tensor of link 5 */
+    const real six_r_W_5_in_axes5_yz_2 =
+        v->six_r_omega_4_in_axes5_y_2*v->six_r_omega_5_in_axes5_z_2;
+    /* (six_r-alpha_1) angular acceleration of link 1 */
+    const real six_r_alpha_1_t = v->six_r_c_2*v->six_r_qdd_1_t_5;
+    const real six_r_alpha_1_in_axes2_y = v->six_r_qdd_1_t_5*v->six_r_s_2;
+    /* (six_r-alpha_2) angular acceleration of link 2 */
+    const real six_r_alpha_2_in_axes2_x = v->six_r_W_2_in_axes2_yz_2 - six_r_alpha_1_t;
+    const real six_r_alpha_2_in_axes2_y = v->six_r_zeta_2_in_axes2_y_2 +
+        six_r_alpha_1_in_axes2_y;
+    /* (six_r-B_2) acceleration tensor of link 2 */
+    const real six_r_B_2_in_axes2_xy = six_r_W_2_in_axes2_xy_2 - v->six_r_qdd_1_t_4;
+    const real six_r_B_2_in_axes2_yx = six_r_W_2_in_axes2_xy_2 + v->six_r_qdd_1_t_4;
+    const real six_r_B_2_in_axes2_zx = -v->six_r_zeta_2_in_axes2_y_2 -
+        six_r_alpha_2_in_axes2_y;
+    const real six_r_B_2_in_axes2_zy = v->six_r_W_2_in_axes2_yz_2 + six_r_alpha_2_in_axes2_x;
+    /* (six_r-alpha_3) angular acceleration of link 3 */
+    const real six_r_alpha_3_in_axes3_x = six_r_alpha_2_in_axes2_x*v->six_r_s_3 -
+        v->six_r_zeta_3_t_2 - six_r_alpha_2_in_axes2_y*v->six_r_c_3;
+    const real six_r_alpha_3_in_axes3_y = v->six_r_zeta_3_in_axes3_y +
+        six_r_alpha_2_in_axes2_x*v->six_r_c_3 + six_r_alpha_2_in_axes2_y*v->six_r_s_3;
+    const real six_r_alpha_3_in_axes3_z = v->six_r_qdd_1_t_3 + v->six_r_qdd_1_t_4;
+    /* (six_r-B_3) acceleration tensor of link 3 */
+    const real six_r_B_3_in_axes3_xy = six_r_W_3_in_axes3_xy_2 - six_r_alpha_3_in_axes3_z;
+    const real six_r_B_3_in_axes3_xz = six_r_W_3_in_axes3_xz_2 + six_r_alpha_3_in_axes3_y;
+    const real six_r_B_3_in_axes3_yx = six_r_W_3_in_axes3_xy_2 + six_r_alpha_3_in_axes3_z;
+    const real six_r_B_3_in_axes3_yz = six_r_W_3_in_axes3_yz_2 - six_r_alpha_3_in_axes3_x;
+    const real six_r_B_3_in_axes3_zx = six_r_W_3_in_axes3_xz_2 - six_r_alpha_3_in_axes3_y;
+    const real six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz_2 + six_r_alpha_3_in_axes3_x;
+    /* (six_r-alpha_4) angular acceleration of link 4 */
+    const real six_r_alpha_4_in_axes4_x = v->six_r_zeta_4_in_axes4_x_2 +
+        six_r_alpha_3_in_axes3_z*v->six_r_h_4_t -
+        six_r_alpha_3_in_axes3_x*v->six_r_e_2_in_axes5_z;
+    const real six_r_alpha_4_in_axes4_y = v->six_r_zeta_4_in_axes4_y +
+        six_r_alpha_3_in_axes3_z*v->six_r_e_2_in_axes5_z +
+        six_r_alpha_3_in_axes3_x*v->six_r_h_4_t;
+    const real six_r_alpha_4_in_axes4_z = v->six_r_qdd_4 + six_r_alpha_3_in_axes3_y;
+    /* (six_r-B_4) acceleration tensor of link 4 */
+    const real six_r_B_4_in_axes4_xy = six_r_W_4_in_axes4_xy_2 - six_r_alpha_4_in_axes4_z;
+    const real six_r_B_4_in_axes4_xz = six_r_W_4_in_axes4_xz_2 + six_r_alpha_4_in_axes4_y;
+    const real six_r_B_4_in_axes4_yx = six_r_W_4_in_axes4_xy_2 + six_r_alpha_4_in_axes4_z;
+    const real six_r_B_4_in_axes4_yz = six_r_W_4_in_axes4_yz_2 - six_r_alpha_4_in_axes4_x;
+    const real six_r_B_4_in_axes4_zx = six_r_W_4_in_axes4_xz_2 - six_r_alpha_4_in_axes4_y;
+    const real six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz_2 + six_r_alpha_4_in_axes4_x;
+    /* (six_r-alpha_5) angular acceleration of link 5 */
+    const real six_r_alpha_5_in_axes5_x = v->six_r_J_5_t*six_r_alpha_4_in_axes4_x -
+        v->six_r_zeta_5_t_2 + six_r_alpha_4_in_axes4_z*v->six_r_e_4_in_axes5_x;
+    const real six_r_alpha_5_in_axes5_y = v->six_r_zeta_5_in_axes5_y +
+        six_r_alpha_4_in_axes4_x*v->six_r_e_4_in_axes5_x -
+        v->six_r_J_5_t*six_r_alpha_4_in_axes4_z;
+    const real six_r_alpha_5_in_axes5_z = v->six_r_qdd_5 + six_r_alpha_4_in_axes4_y;
+    /* (six_r-B_5) acceleration tensor of link 5 */
+    const real six_r_B_5_in_axes5_xy = v->six_r_W_4_in_axes5_xy_2 - six_r_alpha_5_in_axes5_z;
+    const real six_r_B_5_in_axes5_xz = v->six_r_W_5_in_axes5_xz_2 + six_r_alpha_5_in_axes5_y;
+    const real six_r_B_5_in_axes5_yx = v->six_r_W_4_in_axes5_xy_2 + six_r_alpha_5_in_axes5_z;
+    const real six_r_B_5_in_axes5_yz = six_r_W_5_in_axes5_yz_2 - six_r_alpha_5_in_axes5_x;
+    const real six_r_B_5_in_axes5_zx = v->six_r_W_5_in_axes5_xz_2 - six_r_alpha_5_in_axes5_y;
+    const real six_r_B_5_in_axes5_zy = six_r_W_5_in_axes5_yz_2 + six_r_alpha_5_in_axes5_x;
+    /* (six_r-a_o_3) acceleration of the origin of joint 3 */
+    const real six_r_a_o_3_t = v->six_r_omega_1_in_axes2_y_2*v->six_r_omega_1_in_axes2_y_2;
+    const real six_r_a_o_3_t_2 = v->six_r_qd_1_t_18*v->six_r_qd_1_t_18;
+    const real six_r_a_o_3_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_t_2 +
+        six_r_a_o_3_t);
+    const real six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*m->six_r_joint3_offset_x[i];
+    const real six_r_a_o_3_in_axes2_z = six_r_B_2_in_axes2_zx*m->six_r_joint3_offset_x[i];
+    const real six_r_a_o_3_in_axes3_x = six_r_a_o_3_in_axes2_x*v->six_r_s_3 -
+        six_r_a_o_3_in_axes2_y*v->six_r_c_3;
+    const real six_r_a_o_3_in_axes3_y = six_r_a_o_3_in_axes2_x*v->six_r_c_3 +
+        six_r_a_o_3_in_axes2_y*v->six_r_s_3;
+    /* (six_r-a_o_4) acceleration of the origin of joint 4 */
+    const real six_r_a_o_4_in_axes3_x = six_r_B_3_in_axes3_xy*m->six_r_joint4_offset_x[i] +
+        six_r_a_o_3_in_axes3_x;
+    const real six_r_a_o_4_in_axes3_y = six_r_a_o_3_in_axes3_y -
+        six_r_W_3_t_6*m->six_r_joint4_offset_x[i];
+    const real six_r_a_o_4_in_axes3_z = six_r_a_o_3_in_axes2_z +
+        six_r_B_3_in_axes3_zy*m->six_r_joint4_offset_x[i];
+    /* (six_r-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real six_r_acc_3_in_axes3_x = six_r_a_o_3_in_axes3_x - v->six_r_g_in_axes3_x;
+    const real six_r_acc_3_in_axes3_y = six_r_a_o_3_in_axes3_y - v->six_r_g_in_axes3_y;
+    const real six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - v->six_r_g_in_axes1_y;
+    /* (six_r-f_3) inertia force of link 3 less its weight */
+    const real six_r_f_3_t = v->six_r_omega_2_in_axes3_y_2*v->six_r_omega_2_in_axes3_y_2;
+    const real six_r_f_3_in_axes3_x = m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_5 + six_r_f_3_t)
+        + six_r_B_3_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
+        six_r_acc_3_in_axes3_x*m->six_r_link3_mass[i] +
+        six_r_B_3_in_axes3_xz*m->six_r_h_3_in_spec3_z[i];
+    const real six_r_f_3_in_axes3_y = six_r_acc_3_in_axes3_y*m->six_r_link3_mass[i] -
+        six_r_W_3_t_6*m->six_r_h_3_in_spec3_x[i] -
+        six_r_B_3_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] +
+        six_r_B_3_in_axes3_yz*m->six_r_h_3_in_spec3_z[i];
+    const real six_r_f_3_in_axes3_z = six_r_B_3_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] -
+        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t_4 + six_r_f_3_t) +
+        six_r_acc_3_in_axes3_z*m->six_r_link3_mass[i] -
+        six_r_B_3_in_axes3_zx*m->six_r_h_3_in_spec3_y[i];
+    /* (six_r-acc_4) acceleration of the reference point of link 4, less gravity */
+    const real six_r_acc_4_in_axes4_x = six_r_a_o_4_in_axes3_z*v->six_r_h_4_t -
+        v->six_r_g_in_axes4_x - six_r_a_o_4_in_axes3_x*v->six_r_e_2_in_axes5_z;
+    const real six_r_acc_4_in_axes4_y = six_r_a_o_4_in_axes3_x*v->six_r_h_4_t -
+        v->six_r_g_in_axes4_y + six_r_a_o_4_in_axes3_z*v->six_r_e_2_in_axes5_z;
+    const real six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_y - v->six_r_g_in_axes3_y;
+    /* (six_r-f_4) inertia force of link 4 less its weight */
+    const real six_r_f_4_t = v->six_r_omega_3_in_axes4_x_2*v->six_r_omega_3_in_axes4_x_2;
+    const real six_r_f_4_t_2 = v->six_r_omega_4_in_axes4_z_2*v->six_r_omega_4_in_axes4_z_2;
+    const real six_r_f_4_in_axes4_x = six_r_B_4_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] -
+        m->six_r_h_4_in_spec4_y[i]*(v->six_r_bias_t_19 + six_r_f_4_t_2) +
+        six_r_B_4_in_axes4_xz*m->six_r_h_4_in_spec4_x[i] +
+        six_r_acc_4_in_axes4_x*m->six_r_link4_mass[i];
+    const real six_r_f_4_in_axes4_y = six_r_B_4_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] -
+        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_t + six_r_f_4_t_2) +
+        six_r_B_4_in_axes4_yz*m->six_r_h_4_in_spec4_x[i] +
+        six_r_acc_4_in_axes4_y*m->six_r_link4_mass[i];
+    const real six_r_f_4_in_axes4_z = six_r_acc_4_in_axes4_z*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_x[i]*(v->six_r_bias_t_19 + six_r_f_4_t) +
+        six_r_B_4_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_in_axes4_zy*m->six_r_h_4_in_spec4_z[i];
+    const real six_r_f_4_in_axes3_x = six_r_f_4_in_axes4_y*v->six_r_h_4_t -
+        v->six_r_e_2_in_axes5_z*six_r_f_4_in_axes4_x;
+    const real six_r_f_4_in_axes3_z = v->six_r_e_2_in_axes5_z*six_r_f_4_in_axes4_y +
+        six_r_f_4_in_axes4_x*v->six_r_h_4_t;
+    /* (six_r-acc_5) acceleration of the reference point of link 5, less gravity */
+    v->six_r_acc_5_in_axes5_x = v->six_r_S_ddot_in_axes5_x - v->six_r_g_in_axes5_x;
+    v->six_r_acc_5_in_axes5_y = v->six_r_S_ddot_in_axes5_y - v->six_r_g_in_axes5_y;
+    v->six_r_acc_5_in_axes5_z = v->six_r_S_ddot_in_axes5_z - v->six_r_g_in_axes5_z;
+    /* (six_r-mu_5) inertia moment of the links that turn with link 5, about their reference points */
+    const real six_r_mu_5_in_axes5_x = v->six_r_acc_5_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
+        v->six_r_acc_5_in_axes5_y*m->six_r_h_5_in_spec5_z[i] +
+        m->six_r_J_5_in_spec5_yz[i]*(v->six_r_W_5_t_4 - v->six_r_W_5_t_5) +
+        six_r_B_5_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
+        six_r_B_5_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] -
+        six_r_B_5_in_axes5_yz*m->six_r_Sigma_5_in_axes5_zz[i] -
+        six_r_B_5_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i];
+    const real six_r_mu_5_in_axes5_y = v->six_r_acc_5_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
+        v->six_r_acc_5_in_axes5_z*m->six_r_h_5_in_spec5_x[i] -
+        m->six_r_J_5_in_spec5_xz[i]*(v->six_r_bias_t_20 - v->six_r_W_5_t_5) -
+        six_r_B_5_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] +
+        six_r_B_5_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
+        six_r_B_5_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] -
+        six_r_B_5_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i];
+    const real six_r_mu_5_in_axes5_z = v->six_r_acc_5_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
+        v->six_r_acc_5_in_axes5_x*m->six_r_h_5_in_spec5_y[i] +
+        m->six_r_J_5_in_spec5_xy[i]*(v->six_r_bias_t_20 - v->six_r_W_5_t_4) +
+        six_r_B_5_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] -
+        six_r_B_5_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] +
+        six_r_B_5_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] -
+        six_r_B_5_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i];
+    /* (six_r-mu_4) inertia moment of the links that turn with link 4, about their reference points */
+    const real six_r_mu_4_in_axes4_x = m->six_r_J_4_in_spec4_xz[i]*(v->six_r_bias_t_19 -
+        six_r_f_4_t_2) + six_r_acc_4_in_axes4_z*m->six_r_h_4_in_spec4_z[i] +
+        six_r_B_4_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
+        six_r_B_4_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] -
+        six_r_B_4_in_axes4_yz*m->six_r_Sigma_4_in_axes4_zz[i] -
+        six_r_B_4_in_axes4_zx*m->six_r_J_4_in_spec4_yz[i] -
+        six_r_acc_4_in_axes4_y*m->six_r_h_4_in_spec4_x[i];
+    const real six_r_mu_4_in_axes4_y = six_r_B_4_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] -
+        m->six_r_J_4_in_spec4_xy[i]*(six_r_f_4_t - six_r_f_4_t_2) -
+        six_r_acc_4_in_axes4_z*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] -
+        six_r_B_4_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
+        six_r_B_4_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] +
+        six_r_acc_4_in_axes4_x*m->six_r_h_4_in_spec4_x[i];
+    const real six_r_mu_4_in_axes4_z = m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_t -
+        v->six_r_bias_t_19) + six_r_B_4_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
+        six_r_B_4_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] -
+        six_r_B_4_in_axes4_xy*m->six_r_Sigma_4_in_axes4_yy[i] -
+        six_r_B_4_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] +
+        six_r_acc_4_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
+        six_r_acc_4_in_axes4_x*m->six_r_h_4_in_spec4_z[i];
+    /* (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection
+       point left out */
+    const real six_r_N_4_in_axes4_x = six_r_mu_4_in_axes4_x +
+        v->six_r_J_5_t*six_r_mu_5_in_axes5_x + v->six_r_e_4_in_axes5_x*six_r_mu_5_in_axes5_y;
+    const real six_r_N_4_in_axes4_y = six_r_mu_4_in_axes4_y + six_r_mu_5_in_axes5_z;
+    const real six_r_N_4_in_axes4_z = v->six_r_e_4_in_axes5_x*six_r_mu_5_in_axes5_x -
+        v->six_r_J_5_t*six_r_mu_5_in_axes5_y + six_r_mu_4_in_axes4_z;
+    /* (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    const real six_r_mu_3_in_axes3_x = m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_t -
+        six_r_W_3_t_5) - six_r_B_3_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
+        six_r_acc_3_in_axes3_y*m->six_r_h_3_in_spec3_z[i] +
+        six_r_B_3_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
+        six_r_B_3_in_axes3_zy*m->six_r_Sigma_3_in_axes3_yy[i] +
+        six_r_acc_3_in_axes3_z*m->six_r_h_3_in_spec3_x[i] -
+        six_r_B_3_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i];
+    const real six_r_mu_3_in_axes3_y = m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t_4 -
+        six_r_W_3_t_5) - six_r_B_3_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] +
+        six_r_acc_3_in_axes3_x*m->six_r_h_3_in_spec3_z[i] +
+        six_r_B_3_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
+        six_r_acc_3_in_axes3_z*m->six_r_h_3_in_spec3_y[i] -
+        six_r_B_3_in_axes3_zx*m->six_r_Sigma_3_in_axes3_xx[i] -
+        six_r_B_3_in_axes3_zy*m->six_r_J_3_in_spec3_xy[i];
+    const real six_r_mu_3_in_axes3_z = six_r_B_3_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] -
+        m->six_r_J_3_in_spec3_xy[i]*(six_r_W_3_t_4 - six_r_f_3_t) -
+        six_r_B_3_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
+        six_r_acc_3_in_axes3_x*m->six_r_h_3_in_spec3_x[i] -
+        six_r_acc_3_in_axes3_y*m->six_r_h_3_in_spec3_y[i] +
+        six_r_B_3_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
+        six_r_B_3_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i];
+    /* (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection
+       point left out */
+    const real six_r_N_3_in_axes3_x = six_r_mu_3_in_axes3_x +
+        six_r_f_4_in_axes3_z*m->six_r_joint4_offset_x[i] + six_r_N_4_in_axes4_y*v->six_r_h_4_t
+        - six_r_N_4_in_axes4_x*v->six_r_e_2_in_axes5_z;
+    const real six_r_N_3_in_axes3_y = six_r_mu_3_in_axes3_y + six_r_N_4_in_axes4_z;
+    const real six_r_N_3_in_axes3_z = six_r_mu_3_in_axes3_z -
+        six_r_f_4_in_axes3_x*m->six_r_joint4_offset_x[i] +
+        six_r_N_4_in_axes4_y*v->six_r_e_2_in_axes5_z + six_r_N_4_in_axes4_x*v->six_r_h_4_t;
+    /* (six_r-T_3) inertia force of the links from 3 outwards, the last link left out */
+    const real six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes3_x;
+    const real six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes4_z;
+    const real six_r_T_3_in_axes3_z = six_r_f_3_in_axes3_z + six_r_f_4_in_axes3_z;
+    /* (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real six_r_mu_2_t_4 = v->six_r_omega_1_in_axes2_x_2*v->six_r_omega_1_in_axes2_x_2;
+    const real six_r_mu_2_in_axes2_x = m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_t -
+        six_r_a_o_3_t_2) - v->six_r_mu_2_t + six_r_B_2_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i]
+        - m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_t +
+        six_r_B_2_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] -
+        six_r_B_2_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i];
+    const real six_r_mu_2_in_axes2_y =
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_in_axes2_y - v->six_r_mu_2_t_2 -
+        m->six_r_J_2_in_spec2_xz[i]*(six_r_mu_2_t_4 - six_r_a_o_3_t_2) -
+        six_r_B_2_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] +
+        six_r_B_2_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] -
+        six_r_B_2_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i];
+    const real six_r_mu_2_in_axes2_z = m->six_r_J_2_in_spec2_xy[i]*(six_r_mu_2_t_4 -
+        six_r_a_o_3_t) - v->six_r_mu_2_t_3 +
+        six_r_B_2_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] -
+        six_r_B_2_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] +
+        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_in_axes2_y -
+        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_t;
+    /* (six_r-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
+       point left out */
+    const real six_r_N_2_in_axes2_x = six_r_mu_2_in_axes2_x +
+        six_r_N_3_in_axes3_x*v->six_r_s_3 + six_r_N_3_in_axes3_y*v->six_r_c_3;
+    const real six_r_N_2_in_axes2_y = six_r_mu_2_in_axes2_y -
+        six_r_T_3_in_axes3_z*m->six_r_joint3_offset_x[i] + six_r_N_3_in_axes3_y*v->six_r_s_3 -
+        six_r_N_3_in_axes3_x*v->six_r_c_3;
+    const real six_r_N_2_in_axes2_z = six_r_mu_2_in_axes2_z -
+        m->six_r_joint3_offset_x[i]*(six_r_T_3_in_axes3_x*v->six_r_c_3 -
+        six_r_T_3_in_axes3_y*v->six_r_s_3) + six_r_N_3_in_axes3_z;
+    /* (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real six_r_mu_1_in_axes1_z = -v->six_r_mu_1_t -
+        m->six_r_J_1_in_spec1_xx[i]*v->six_r_qdd_1_t_5;
+    /* (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
+       point left out */
+    const real six_r_N_1_in_axes1_z = six_r_mu_1_in_axes1_z +
+        six_r_N_2_in_axes2_x*v->six_r_c_2 - six_r_N_2_in_axes2_y*v->six_r_s_2;
+    /* (six_r-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
+       all degrees of freedom */
+    const real six_r_G_m1_t = v->inv_six_r_w_1_t_8*six_r_mu_5_in_axes5_z;
+    const real six_r_G_m1_t_2 = v->inv_six_r_w_1_t_24*(six_r_G_m1_t*v->six_r_w_1_t_11 -
+        six_r_N_4_in_axes4_z);
+    const real six_r_G_m1_t_3 = v->inv_six_r_w_1_t_45*(six_r_G_m1_t*v->six_r_w_1_t_14 +
+        six_r_G_m1_t_2*v->six_r_w_1_t_29 - six_r_N_1_in_axes1_z);
+    const real six_r_G_m1_t_4 = v->inv_six_r_w_1_t_63*(six_r_G_m1_t*v->six_r_w_1_t_18 +
+        six_r_G_m1_t_2*v->six_r_w_1_t_35 - six_r_N_2_in_axes2_z -
+        six_r_G_m1_t_3*v->six_r_w_1_t_51);
+    const real six_r_G_m1_t_5 = v->inv_six_r_w_1_t_75*(six_r_G_m1_t*v->six_r_w_1_t_21 +
+        six_r_N_3_in_axes3_z - six_r_G_m1_t_2*v->six_r_w_1_t_40 +
+        six_r_G_m1_t_3*v->six_r_w_1_t_57 + six_r_G_m1_t_4*v->six_r_w_1_t_69);
+    const real six_r_G_m1_t_6 = m->six_r_size[i]*(six_r_G_m1_t_2*v->six_r_w_1_t_27 +
+        six_r_G_m1_t_3*v->six_r_w_1_t_49 + six_r_G_m1_t_4*v->six_r_w_1_t_67 -
+        six_r_G_m1_t_5*v->six_r_m1_w_1_t);
+    /* (six_r-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
+       all degrees of freedom */
+    const real six_r_G_m2_t = m->six_r_size[i]*(six_r_G_m1_t_2*v->six_r_w_1_t_28 -
+        six_r_G_m1_t*v->six_r_w_1_t_10 + six_r_G_m1_t_3*v->six_r_w_1_t_50 +
+        six_r_G_m1_t_4*v->six_r_w_1_t_68 - six_r_G_m1_t_5*v->six_r_m2_w_1_t);
+    /* (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real six_r_G_m_in_axes5_x = six_r_G_m1_t_6*v->six_r_end_p1_in_axes5_y;
+    const real six_r_G_m_in_axes5_y = six_r_G_m2_t*v->six_r_end_p1_in_axes5_z -
+        six_r_G_m1_t_6*v->six_r_n_m1_in_axes5_y;
+    /* (six_r-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->six_r_c_in_axes5_x = v->six_r_W_5_t_6*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_B_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] + six_r_G_m1_t_3*v->six_r_w_1_t_46 +
+        six_r_G_m1_t_4*v->six_r_w_1_t_64 - six_r_G_m1_t_5*v->six_r_w_1_t_76;
+    v->six_r_c_in_axes5_y = m->six_r_h_5_in_spec5_y[i]*(v->six_r_W_5_t_5 + v->six_r_bias_t_20)
+        - six_r_B_5_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_t*v->six_r_w_1_t_9 -
+        six_r_G_m1_t_2*v->six_r_w_1_t_25 - six_r_G_m1_t_3*v->six_r_w_1_t_47 -
+        six_r_G_m1_t_4*v->six_r_w_1_t_65 + six_r_G_m1_t_5*v->six_r_w_1_t_77;
+    v->six_r_c_in_axes5_z = m->six_r_h_5_in_spec5_z[i]*(v->six_r_W_5_t_4 + v->six_r_bias_t_20)
+        - six_r_B_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] + six_r_G_m1_t_2*v->six_r_w_1_t_26 +
+        six_r_G_m1_t_3*v->six_r_w_1_t_48 + six_r_G_m1_t_4*v->six_r_w_1_t_66 -
+        six_r_G_m1_t_5*v->six_r_w_1_t_78;
+    /* (six_r-c_m) moment of the leg on the platform without actuation */
+    const real six_r_c_m_in_axes5_z = six_r_G_m2_t*v->six_r_end_p1_in_axes5_y;
+    v->six_r_c_m_x = v->axis_z_six_r_axes5_x*six_r_c_m_in_axes5_z -
+        v->axis_x_six_r_axes5_x*six_r_G_m_in_axes5_x -
+        v->axis_y_six_r_axes5_x*six_r_G_m_in_axes5_y;
+    v->six_r_c_m_y = v->axis_z_six_r_axes5_y*six_r_c_m_in_axes5_z -
+        v->axis_x_six_r_axes5_y*six_r_G_m_in_axes5_x -
+        v->axis_y_six_r_axes5_y*six_r_G_m_in_axes5_y;
+    v->six_r_c_m_z = v->axis_z_six_r_axes5_z*six_r_c_m_in_axes5_z -
+        v->axis_x_six_r_axes5_z*six_r_G_m_in_axes5_x -
+        v->axis_y_six_r_axes5_z*six_r_G_m_in_axes5_y;
+}
+
+/* ---- closure_six_r ---- */
+INLINE void closure_six_r_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void closure_six_r_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, const real *joints, real *o)
+{
+    values_six_r v;
+    stage_six_r_X(m, w, i, j, s, &v);
+    stage_six_r_q(m, w, i, j, joints, &v);
+    stage_six_r_X_q(m, i, &v);
+    /* (six_r-S) from the base point to the connection point */
+    const real t_x = X[0*w + j];
+    const real six_r_S_x = t_x - m->six_r_base_point_x[i] + v.six_r_q_x;
+    const real t_y = X[1*w + j];
+    const real six_r_S_y = t_y - m->six_r_base_point_y[i] + v.six_r_q_y;
+    const real t_z = X[2*w + j];
+    const real six_r_S_z = t_z - m->six_r_base_point_z[i] + v.six_r_q_z;
+    /* (six_r-residual) from the connection point as the links reach it to the platform's */
+    const real six_r_residual_t = six_r_S_x*m->six_r_base_frame_xy[i] +
+        six_r_S_y*m->six_r_base_frame_yy[i] + six_r_S_z*m->six_r_base_frame_zy[i];
+    const real six_r_residual_t_2 = six_r_S_x*m->six_r_base_frame_xz[i] +
+        six_r_S_y*m->six_r_base_frame_yz[i] + six_r_S_z*m->six_r_base_frame_zz[i];
+    const real six_r_residual_t_3 = six_r_S_x*m->six_r_base_frame_xx[i] +
+        six_r_S_y*m->six_r_base_frame_yx[i] + six_r_S_z*m->six_r_base_frame_zx[i];
+    const real six_r_residual_t_4 = v.six_r_c_1*six_r_residual_t +
+        six_r_residual_t_2*v.six_r_s_1;
+    const real six_r_residual_t_5 = v.six_r_c_1*six_r_residual_t_2 -
+        six_r_residual_t*v.six_r_s_1;
+    const real six_r_residual_t_6 = v.six_r_c_2*six_r_residual_t_3 +
+        six_r_residual_t_4*v.six_r_s_2;
+    const real six_r_residual_t_7 = v.six_r_c_2*six_r_residual_t_4 -
+        six_r_residual_t_3*v.six_r_s_2;
+    const real six_r_residual_t_8 = six_r_residual_t_6*v.six_r_s_3 -
+        v.six_r_c_3*six_r_residual_t_7;
+    const real six_r_residual_t_9 = v.six_r_c_3*six_r_residual_t_6 +
+        six_r_residual_t_7*v.six_r_s_3;
+    const real six_r_residual_t_10 = v.six_r_h_4_t*six_r_residual_t_5 -
+        v.six_r_e_2_in_axes5_z*six_r_residual_t_8;
+    const real six_r_residual_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_residual_t_9 +
+        v.six_r_J_5_t*six_r_residual_t_10 - v.six_r_r_1_in_axes5_x;
+    const real six_r_residual_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_residual_t_10 -
+        v.six_r_J_5_t*six_r_residual_t_9 - v.six_r_r_1_in_axes5_y;
+    const real six_r_residual_in_axes5_z = v.six_r_e_2_in_axes5_z*six_r_residual_t_5 +
+        v.six_r_h_4_t*six_r_residual_t_8 - v.six_r_r_1_in_axes5_z;
+    /* (six_r-residual) */
+    o[0*count + k] = six_r_residual_in_axes5_x;
+    o[1*count + k] = six_r_residual_in_axes5_y;
+    o[2*count + k] = six_r_residual_in_axes5_z;
+    /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
+    o[3*count + k] = v.six_r_v_1_in_axes5_x;
+    o[4*count + k] = v.six_r_v_1_in_axes5_y;
+    o[5*count + k] = v.six_r_v_1_in_axes5_z;
+    /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
+    o[6*count + k] = v.six_r_v_2_in_axes5_x;
+    o[7*count + k] = v.six_r_v_2_in_axes5_y;
+    o[8*count + k] = v.six_r_v_2_in_axes5_z;
+    /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
+    o[9*count + k] = v.six_r_v_3_in_axes5_x;
+    o[10*count + k] = v.six_r_v_3_in_axes5_y;
+    o[11*count + k] = v.six_r_v_3_in_axes5_z;
+    /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
+    o[12*count + k] = v.six_r_v_4_in_axes5_z;
+    /* (six_r-v_5) velocity of the connection point per rate of joint 5 */
+    o[13*count + k] = m->six_r_platform_joint_offset_x[i];
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[14*count + k] = -v.six_r_end_p1_in_axes5_z;
+    /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
+    o[15*count + k] = -v.six_r_n_m1_t_11;
+    o[16*count + k] = -v.six_r_n_m1_t_12;
+    o[17*count + k] = -v.six_r_n_m1_t_12;
+    o[18*count + k] = v.six_r_n_m1_in_axes4_z;
+    /* (legs_size) */
+    o[19*count + k] = -v.six_r_n_m1_in_axes5_y;
+    /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
+    o[20*count + k] = -v.six_r_n_m2_t;
+    o[21*count + k] = -v.six_r_n_m2_t_2;
+    o[22*count + k] = -v.six_r_n_m2_t_2;
+    o[23*count + k] = v.six_r_n_m2_in_axes4_z;
+    o[24*count + k] = v.six_r_end_p1_in_axes5_y;
+}
+
+INLINE void closure_six_r_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *residual_six_r, real *jacobian_six_r)
+{
+    residual_six_r[5*i*w + k] = o[0*count + at];
+    residual_six_r[(5*i + 1)*w + k] = o[1*count + at];
+    residual_six_r[(5*i + 2)*w + k] = o[2*count + at];
+    jacobian_six_r[25*i*w + k] = o[3*count + at];
+    jacobian_six_r[(25*i + 5)*w + k] = o[4*count + at];
+    jacobian_six_r[(25*i + 10)*w + k] = o[5*count + at];
+    jacobian_six_r[(25*i + 1)*w + k] = o[6*count + at];
+    jacobian_six_r[(25*i + 6)*w + k] = o[7*count + at];
+    jacobian_six_r[(25*i + 11)*w + k] = o[8*count + at];
+    jacobian_six_r[(25*i + 2)*w + k] = o[9*count + at];
+    jacobian_six_r[(25*i + 7)*w + k] = o[10*count + at];
+    jacobian_six_r[(25*i + 12)*w + k] = o[11*count + at];
+    jacobian_six_r[(25*i + 13)*w + k] = o[12*count + at];
+    jacobian_six_r[(25*i + 9)*w + k] = o[13*count + at];
+    residual_six_r[(5*i + 3)*w + k] = o[14*count + at];
+    jacobian_six_r[(25*i + 15)*w + k] = o[15*count + at];
+    jacobian_six_r[(25*i + 16)*w + k] = o[16*count + at];
+    jacobian_six_r[(25*i + 17)*w + k] = o[17*count + at];
+    jacobian_six_r[(25*i + 18)*w + k] = o[18*count + at];
+    residual_six_r[(5*i + 4)*w + k] = o[19*count + at];
+    jacobian_six_r[(25*i + 20)*w + k] = o[20*count + at];
+    jacobian_six_r[(25*i + 21)*w + k] = o[21*count + at];
+    jacobian_six_r[(25*i + 22)*w + k] = o[22*count + at];
+    jacobian_six_r[(25*i + 23)*w + k] = o[23*count + at];
+    jacobian_six_r[(25*i + 24)*w + k] = o[24*count + at];
+}
+
+INLINE void closure_six_r_run(const prepared *m, const real *X, const real *joints, real
+    *residual_six_r, real *jacobian_six_r, status_flags *t)
+{
+    real s[18] = {0};
+    real o_six_r[25*LEGS(LEGS_OF_six_r)] = {0};
+    clear(jacobian_six_r, 150);
+    values v;
+    closure_six_r_before(m, 1, 0, X, &v, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
+        closure_six_r_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, X, joints, o_six_r);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        closure_six_r_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, residual_six_r, jacobian_six_r);
+    }
+}
+
+/* Close the 6 legs of type six_r from the guess in q, by at most 60 steps of at most 0.5;
+   returns whether the iteration converged on home's branch. */
+static int close_six_r(const prepared *m, const real *X, real *q)
+{
+    static const size_t places[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29};
+    static const size_t rows[] = {0, 1, 2, 3, 4};
+    static const int home[] = {1, 1, 1, 1, 1, 1};  /* signs of the determinants */
+    enum { LEGS = 6, ROWS = 5, N = 5 };
+    enum { RESIDUALS = LEGS*ROWS, SLOPES = RESIDUALS*N, STEPS = LEGS*N };
+    real residual[RESIDUALS] = {0}, jacobian[SLOPES] = {0}, step[STEPS], size = 1;
+    for (int steps = 0; steps < 60 && size > STEADY; ++steps) {
+        status_flags why, *const t = &why;
+        start(1, t);
+        closure_six_r_run(m, X, q, residual, jacobian, t);
+        check(RESIDUALS, 1, residual, t->overflow);
+        check(SLOPES, 1, jacobian, t->overflow);
+        if (status_of(t) != OK) {
+            return 0;
+        }
+        size = newton_step(LEGS, ROWS, N, residual, jacobian, step);
+        for (size_t i = 0; i < STEPS; ++i) {
+            q[places[i]] += size > R(0.5) ? R(0.5)/size*step[i] : step[i];
+        }
+    }
+    for (size_t leg = 0; leg < LEGS && size <= STEADY; ++leg) {
+        if (side(N, rows, jacobian + leg*ROWS*N) != home[leg]) {
+            return 0;
+        }
+    }
+    return size <= STEADY;
+}
+
+/* The displacements at w states side by side, from q0 (state by state, or NULL: from home);
+   revolute ones in (-pi, pi]. */
+static void close_loops(const prepared *m, size_t w, const real *X, const real *q0, real *joints,
+        status_flags *t)
+{
+    static const size_t turning[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29};
+    for (size_t k = 0; k < w; ++k) {
+        real x[NQ], q[NJ];
+        for (size_t e = 0; e < NQ; ++e) {
+            x[e] = X[e*w + k];
+        }
+        memcpy(q, q0 ? q0 + NJ*k : hexapod_6x6r_HOME_Q, sizeof q);
+        check(NJ, 1, q, t->invalid + k);
+        if (!(t->invalid[k] > 0)) {
+            t->diverged[k] += UNLESS(close_six_r(m, x, q));
+        }
+        wrap_turns(30, 1, turning, q);
+        for (size_t e = 0; e < NJ; ++e) {
+            joints[e*w + k] = q[e];
+        }
+    }
+}
+
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_Z_dynamics(m, w, k, V, v);
+    s[27*w + k] = v->Z_p_x;
+    s[28*w + k] = v->Z_p_y;
+    s[29*w + k] = v->Z_p_z;
+    s[30*w + k] = v->Z_q_x;
+    s[31*w + k] = v->Z_q_y;
+    s[32*w + k] = v->Z_q_z;
+}
+
+INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *V, const real *joints, real *terms, real *o)
+{
+    values_six_r v;
+    stage_six_r_X(m, w, i, j, s, &v);
+    stage_six_r_q(m, w, i, j, joints, &v);
+    stage_six_r_V_X(w, j, V, &v);
+    stage_six_r_V_q(w, j, V, &v);
+    stage_six_r_X_q(m, i, &v);
+    stage_six_r_V_X_q(m, i, &v);
+    stage_six_r_M_dynamics(m, i, &v);
+    stage_six_r_Z_dynamics(m, w, i, j, V, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, six_r_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, six_r_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, six_r_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, six_r_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, six_r_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, six_r_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, six_r_M_ta_t_13);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, six_r_M_ta_t_17);  /* M_ta_t */
-    gather(&terms[11*count + k], add, six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, six_r_M_ta_t_21);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, six_r_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, six_r_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, six_r_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, six_r_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, six_r_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, six_r_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.six_r_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.six_r_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.six_r_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.six_r_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.six_r_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.six_r_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.six_r_M_ta_t_13);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.six_r_M_ta_t_17);  /* M_ta_t */
+    gather(&terms[11*count + k], add, v.six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.six_r_M_ta_t_21);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.six_r_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.six_r_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.six_r_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.six_r_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.six_r_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.six_r_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, six_r_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, six_r_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, six_r_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[24*count + k], add, six_r_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, six_r_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, six_r_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (six_r-w_2) */
-    o[0*count + k] = six_r_w_2_x;
-    o[1*count + k] = six_r_w_2_y;
-    o[2*count + k] = six_r_w_2_z;
-    /* (six_r-H_a_2) */
-    o[3*count + k] = six_r_H_a_2_x;
-    o[4*count + k] = six_r_H_a_2_y;
-    o[5*count + k] = six_r_H_a_2_z;
-    o[7*count + k] = (six_r_w_2_x + (six_r_w_2_y + six_r_w_2_z)) + (six_r_H_a_2_x +
-        (six_r_H_a_2_y + six_r_H_a_2_z));
-    o[6*count + k] = UNLESS(magnitude(six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
+    gather(&terms[21*count + k], add, v.six_r_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, v.six_r_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, v.six_r_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[24*count + k], add, v.six_r_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, v.six_r_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, v.six_r_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (six_r-w_2) force part of reciprocal wrench 2 */
+    o[0*count + k] = v.six_r_w_2_x;
+    o[1*count + k] = v.six_r_w_2_y;
+    o[2*count + k] = v.six_r_w_2_z;
+    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.six_r_H_a_2_x;
+    o[4*count + k] = v.six_r_H_a_2_y;
+    o[5*count + k] = v.six_r_H_a_2_z;
+    o[7*count + k] = (v.six_r_w_2_x + (v.six_r_w_2_y + v.six_r_w_2_z)) + (v.six_r_H_a_2_x +
+        (v.six_r_H_a_2_y + v.six_r_H_a_2_z));
+    o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
 INLINE void dynamics_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -5349,7 +4830,7 @@ INLINE void dynamics_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -5360,58 +4841,58 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
-    const real Z_p_x = s[18*w + k];
+    const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[21*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
+    const real Z_p_y = s[28*w + k];
     const real Z_t_y_of_legs = sums[22*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
+    const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[23*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
-    const real Z_q_x = s[21*w + k];
+    const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
-    const real Z_q_y = s[22*w + k];
+    const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
-    const real Z_q_z = s[23*w + k];
+    const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -5473,9 +4954,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, const real *joints, real
-    *M, real *Z, real *H, verdict *t)
+    *M, real *Z, real *H, status_flags *t)
 {
-    real s[24] = {0}, sums[27] = {0};
+    real s[33] = {0}, sums[27] = {0};
     real terms_six_r[27*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[8*LEGS(LEGS_OF_six_r)] = {0};
     values v;
     dynamics_before(m, 1, 0, X, &v, s, t);
@@ -5493,9 +4974,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, const r
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, const real *joints,
-    real *restrict M, real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict M, real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[27*LANES];
+    real s[33*LANES], sums[27*LANES];
     real o_six_r[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -5518,7 +4999,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, c
 
 /* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -5530,21 +5011,16 @@ INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, value
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
-{
-    stage_M_dynamics(m, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -5553,936 +5029,46 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     values_six_r v;
     stage_six_r_X(m, w, i, j, s, &v);
     stage_six_r_q(m, w, i, j, joints, &v);
-    stage_six_r_M_dynamics(m, w, i, j, joints, &v);
-    /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real six_r_n_m1_t = v.six_r_c_3*v.six_r_h_4_t;
-    const real six_r_n_m1_t_2 = v.six_r_h_4_t*v.six_r_s_3;
-    const real six_r_n_m1_t_3 = v.six_r_c_2*six_r_n_m1_t_2 + six_r_n_m1_t*v.six_r_s_2;
-    const real six_r_n_m1_t_4 = six_r_n_m1_t_2*v.six_r_s_2 - v.six_r_c_2*six_r_n_m1_t;
-    const real six_r_n_m1_t_5 = v.six_r_c_1*six_r_n_m1_t_4 -
-        v.six_r_e_2_in_axes5_z*v.six_r_s_1;
-    const real six_r_n_m1_t_6 = v.six_r_c_1*v.six_r_e_2_in_axes5_z +
-        six_r_n_m1_t_4*v.six_r_s_1;
-    const real axis_z_six_r_axes5_x = m->six_r_base_frame_xx[i]*six_r_n_m1_t_3 +
-        m->six_r_base_frame_xy[i]*six_r_n_m1_t_5 + m->six_r_base_frame_xz[i]*six_r_n_m1_t_6;
-    const real axis_z_six_r_axes5_y = m->six_r_base_frame_yx[i]*six_r_n_m1_t_3 +
-        m->six_r_base_frame_yy[i]*six_r_n_m1_t_5 + m->six_r_base_frame_yz[i]*six_r_n_m1_t_6;
-    const real axis_z_six_r_axes5_z = m->six_r_base_frame_zx[i]*six_r_n_m1_t_3 +
-        m->six_r_base_frame_zy[i]*six_r_n_m1_t_5 + m->six_r_base_frame_zz[i]*six_r_n_m1_t_6;
-    const real six_r_n_m1_t_7 = v.six_r_e_2_in_axes5_z*v.six_r_e_4_in_axes5_x;
-    const real six_r_n_m1_t_8 = v.six_r_J_5_t*v.six_r_s_3 - v.six_r_c_3*six_r_n_m1_t_7;
-    const real six_r_n_m1_t_9 = -v.six_r_J_5_t*v.six_r_c_3 - six_r_n_m1_t_7*v.six_r_s_3;
-    const real six_r_n_m1_t_10 = v.six_r_c_2*six_r_n_m1_t_9 + six_r_n_m1_t_8*v.six_r_s_2;
-    const real six_r_n_m1_t_11 = six_r_n_m1_t_9*v.six_r_s_2 - v.six_r_c_2*six_r_n_m1_t_8;
-    const real six_r_n_m1_t_12 = v.six_r_c_1*six_r_n_m1_t_11 -
-        v.six_r_e_2_in_axes5_y*v.six_r_s_1;
-    const real six_r_n_m1_t_13 = v.six_r_c_1*v.six_r_e_2_in_axes5_y +
-        six_r_n_m1_t_11*v.six_r_s_1;
-    const real axis_y_six_r_axes5_x = m->six_r_base_frame_xx[i]*six_r_n_m1_t_10 +
-        m->six_r_base_frame_xy[i]*six_r_n_m1_t_12 + m->six_r_base_frame_xz[i]*six_r_n_m1_t_13;
-    const real axis_y_six_r_axes5_y = m->six_r_base_frame_yx[i]*six_r_n_m1_t_10 +
-        m->six_r_base_frame_yy[i]*six_r_n_m1_t_12 + m->six_r_base_frame_yz[i]*six_r_n_m1_t_13;
-    const real axis_y_six_r_axes5_z = m->six_r_base_frame_zx[i]*six_r_n_m1_t_10 +
-        m->six_r_base_frame_zy[i]*six_r_n_m1_t_12 + m->six_r_base_frame_zz[i]*six_r_n_m1_t_13;
-    const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
-        axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
-    const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
-        axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
-    const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
-        axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real six_r_n_m1_t_14 =
-        m->six_r_platform_joint_axis_platform_x[i]*(R_yx*m->six_r_base_frame_yy[i] +
-        R_zx*m->six_r_base_frame_zy[i] + R_xx*m->six_r_base_frame_xy[i]) +
-        m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xy[i] +
-        R_zy*m->six_r_base_frame_zy[i] + R_yy*m->six_r_base_frame_yy[i]) +
-        m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xy[i] +
-        R_yz*m->six_r_base_frame_yy[i] + R_zz*m->six_r_base_frame_zy[i]);
-    const real six_r_n_m1_t_15 =
-        m->six_r_platform_joint_axis_platform_x[i]*(R_yx*m->six_r_base_frame_yz[i] +
-        R_zx*m->six_r_base_frame_zz[i] + R_xx*m->six_r_base_frame_xz[i]) +
-        m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xz[i] +
-        R_zy*m->six_r_base_frame_zz[i] + R_yy*m->six_r_base_frame_yz[i]) +
-        m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xz[i] +
-        R_yz*m->six_r_base_frame_yz[i] + R_zz*m->six_r_base_frame_zz[i]);
-    const real six_r_n_m1_t_16 =
-        m->six_r_platform_joint_axis_platform_x[i]*(R_yx*m->six_r_base_frame_yx[i] +
-        R_zx*m->six_r_base_frame_zx[i] + R_xx*m->six_r_base_frame_xx[i]) +
-        m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xx[i] +
-        R_zy*m->six_r_base_frame_zx[i] + R_yy*m->six_r_base_frame_yx[i]) +
-        m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xx[i] +
-        R_yz*m->six_r_base_frame_yx[i] + R_zz*m->six_r_base_frame_zx[i]);
-    const real six_r_n_m1_t_17 = v.six_r_c_1*six_r_n_m1_t_14 + six_r_n_m1_t_15*v.six_r_s_1;
-    const real six_r_n_m1_t_18 = v.six_r_c_1*six_r_n_m1_t_15 - six_r_n_m1_t_14*v.six_r_s_1;
-    const real six_r_n_m1_t_19 = v.six_r_c_2*six_r_n_m1_t_16 + six_r_n_m1_t_17*v.six_r_s_2;
-    const real six_r_n_m1_t_20 = v.six_r_c_2*six_r_n_m1_t_17 - six_r_n_m1_t_16*v.six_r_s_2;
-    const real six_r_n_m1_t_21 = six_r_n_m1_t_19*v.six_r_s_3 - v.six_r_c_3*six_r_n_m1_t_20;
-    const real six_r_n_m1_t_22 = v.six_r_c_3*six_r_n_m1_t_19 + six_r_n_m1_t_20*v.six_r_s_3;
-    const real six_r_n_m1_t_23 = v.six_r_h_4_t*six_r_n_m1_t_18 -
-        v.six_r_e_2_in_axes5_z*six_r_n_m1_t_21;
-    const real six_r_n_m1_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_n_m1_t_22 +
-        v.six_r_J_5_t*six_r_n_m1_t_23;
-    const real six_r_end_p1_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_n_m1_t_23 -
-        v.six_r_J_5_t*six_r_n_m1_t_22;
-    const real six_r_n_m1_x = axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
-        axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y;
-    const real six_r_n_m1_y = axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
-        axis_x_six_r_axes5_y*six_r_end_p1_in_axes5_y;
-    const real six_r_n_m1_z = axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
-        axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y;
-    /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-    const real six_r_end_p1_in_axes5_z = v.six_r_e_2_in_axes5_z*six_r_n_m1_t_18 +
-        v.six_r_h_4_t*six_r_n_m1_t_21;
-    const real six_r_n_m2_x = axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
-        axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z;
-    const real six_r_n_m2_y = axis_z_six_r_axes5_y*six_r_end_p1_in_axes5_y -
-        axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z;
-    const real six_r_n_m2_z = axis_z_six_r_axes5_z*six_r_end_p1_in_axes5_y -
-        axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z;
-    /* (six_r-w_1) force part of reciprocal wrench 1 */
-    const real six_r_w_1_t = v.six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
-        v.six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-    const real six_r_w_1_t_2 = v.six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
-        v.six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-    const real six_r_w_1_t_3 = v.six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-        v.six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
-    const real six_r_w_1_t_4 = v.six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-        v.six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y;
-    const real six_r_w_1_t_5 = m->six_r_size[i]*six_r_w_1_t;
-    const real six_r_w_1_t_6 = m->six_r_size[i]*six_r_w_1_t_3;
-    const real six_r_w_1_t_7 = m->six_r_size[i]*six_r_w_1_t_2;
-    const real six_r_w_1_t_8 = m->six_r_size[i]*six_r_w_1_t_4;
-    const real six_r_w_1_t_9 = m->six_r_size[i]*(-v.six_r_J_5_t*six_r_n_m1_in_axes5_y -
-        v.six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y);
-    const real six_r_w_1_t_10 = v.six_r_J_5_t*six_r_end_p1_in_axes5_z*m->six_r_size[i];
-    const real six_r_w_1_t_11 = six_r_end_p1_in_axes5_y*m->six_r_size[i];
-    const real six_r_w_1_t_12 = root(m->six_r_size_t[i] + six_r_w_1_t_11*six_r_w_1_t_11);
-    const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
-    const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*m->six_r_platform_joint_offset_x[i];
-    const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
-    const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
-    const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
-    const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-    const real six_r_w_1_t_18 = v.six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
-        six_r_w_1_t_14*six_r_w_1_t_6;
-    const real six_r_w_1_t_19 = v.six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
-    const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
-    const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-    const real six_r_w_1_t_22 = v.six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-    const real six_r_w_1_t_23 = v.six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
-    const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-    const real six_r_w_1_t_25 = six_r_w_1_t_21 - v.six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-    const real six_r_w_1_t_26 = v.six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
-    const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-    const real six_r_w_1_t_28 = root(v.six_r_v_4_in_axes5_z*v.six_r_v_4_in_axes5_z +
-        six_r_w_1_t_9*six_r_w_1_t_9 + six_r_w_1_t_16*six_r_w_1_t_16 +
-        six_r_w_1_t_17*six_r_w_1_t_17);
-    const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
-    const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-    const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*v.six_r_v_4_in_axes5_z;
-    const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
-    const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
-    const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-        + six_r_w_1_t_31*six_r_w_1_t_5 - v.six_r_v_1_in_axes5_z*six_r_w_1_t_30;
-    const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-    const real six_r_w_1_t_35 = v.six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
-    const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
-    const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
-    const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-    const real six_r_w_1_t_39 = six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32
-        - v.six_r_v_2_in_axes5_z*six_r_w_1_t_30 + six_r_w_1_t_38;
-    const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-    const real six_r_w_1_t_41 = v.six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
-    const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
-    const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-    const real six_r_w_1_t_44 = six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32
-        - v.six_r_v_3_in_axes5_z*six_r_w_1_t_30 + six_r_w_1_t_38;
-    const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-    const real six_r_w_1_t_46 = v.six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
-    const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
-    const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-    const real six_r_w_1_t_49 = root(v.six_r_v_1_in_axes5_x*v.six_r_v_1_in_axes5_x +
-        six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
-        six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
-    const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-    const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*v.six_r_v_1_in_axes5_x;
-    const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
-    const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
-    const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
-    const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-    const real six_r_w_1_t_55 = v.six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
-        six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
-        six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-    const real six_r_w_1_t_56 = v.six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
-    const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
-    const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
-    const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
-    const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-    const real six_r_w_1_t_61 = v.six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
-        six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
-        six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-    const real six_r_w_1_t_62 = v.six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
-    const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
-    const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
-    const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
-    const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
-    const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
-        six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
-        six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
-    const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
-    const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
-    const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
-    const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
-    const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
-    const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
-    const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
-        + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-        six_r_w_1_t_66*six_r_w_1_t_72;
-    const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
-    const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
-    const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
-    const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
-    const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
-    const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
-        six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
-        six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
-    const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
-    const real six_r_w_1_t_80 = inv_six_r_w_1_t_79*six_r_w_1_t_74;
-    const real six_r_w_1_t_81 = inv_six_r_w_1_t_79*six_r_w_1_t_75;
-    const real six_r_w_1_t_82 = inv_six_r_w_1_t_79*six_r_w_1_t_76;
-    const real six_r_w_1_t_83 = inv_six_r_w_1_t_49*inv_six_r_w_1_t_67*six_r_w_1_t_55;
-    const real six_r_w_1_t_84 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_49*six_r_w_1_t_61 -
-        six_r_w_1_t_73*six_r_w_1_t_83);
-    const real six_r_w_1_in_axes5_x = inv_six_r_w_1_t_49*six_r_w_1_t_50 -
-        six_r_w_1_t_68*six_r_w_1_t_83 - six_r_w_1_t_80*six_r_w_1_t_84;
-    const real six_r_w_1_in_axes5_y = six_r_w_1_t_69*six_r_w_1_t_83 -
-        inv_six_r_w_1_t_49*six_r_w_1_t_51 + six_r_w_1_t_81*six_r_w_1_t_84;
-    const real six_r_w_1_in_axes5_z = inv_six_r_w_1_t_49*six_r_w_1_t_52 -
-        six_r_w_1_t_70*six_r_w_1_t_83 - six_r_w_1_t_82*six_r_w_1_t_84;
-    /* (six_r-m1_w_1) moment part 1 of reciprocal wrench 1 */
-    const real six_r_m1_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_77;
-    const real six_r_m1_w_1_t_2 = m->six_r_size[i]*(six_r_w_1_t_71*six_r_w_1_t_83 -
-        inv_six_r_w_1_t_49*six_r_w_1_t_53 + six_r_m1_w_1_t*six_r_w_1_t_84);
-    /* (six_r-m2_w_1) moment part 2 of reciprocal wrench 1 */
-    const real six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78;
-    const real six_r_m2_w_1_t_2 = m->six_r_size[i]*(six_r_w_1_t_72*six_r_w_1_t_83 -
-        inv_six_r_w_1_t_49*six_r_w_1_t_54 + six_r_m2_w_1_t*six_r_w_1_t_84);
-    /* (six_r-w_2) force part of reciprocal wrench 2 */
-    const real six_r_w_2_t = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
-    const real six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 -
-        six_r_w_1_t_80*six_r_w_2_t;
-    const real six_r_w_2_in_axes5_y = six_r_w_1_t_81*six_r_w_2_t -
-        inv_six_r_w_1_t_67*six_r_w_1_t_69;
-    const real six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 -
-        six_r_w_1_t_82*six_r_w_2_t;
-    /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
-    const real six_r_m1_w_2 = m->six_r_size[i]*(inv_six_r_w_1_t_67*six_r_w_1_t_71 -
-        six_r_m1_w_1_t*six_r_w_2_t);
-    /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
-    const real six_r_m2_w_2 = m->six_r_size[i]*(inv_six_r_w_1_t_67*six_r_w_1_t_72 -
-        six_r_m2_w_1_t*six_r_w_2_t);
-    /* (six_r-w_3) force part of reciprocal wrench 3 */
-    const real six_r_w_3_in_axes5_x = inv_six_r_w_1_t_79*six_r_w_1_t_80;
-    const real six_r_w_3_t = inv_six_r_w_1_t_79*six_r_w_1_t_81;
-    const real six_r_w_3_in_axes5_z = inv_six_r_w_1_t_79*six_r_w_1_t_82;
-    /* (six_r-m1_w_3) moment part 1 of reciprocal wrench 3 */
-    const real six_r_m1_w_3 = inv_six_r_w_1_t_79*six_r_m1_w_1_t*m->six_r_size[i];
-    /* (six_r-m2_w_3) moment part 2 of reciprocal wrench 3 */
-    const real six_r_m2_w_3 = inv_six_r_w_1_t_79*six_r_m2_w_1_t*m->six_r_size[i];
-    /* (six_r-w_4) force part of reciprocal wrench 4 */
-    const real six_r_w_4_t = inv_six_r_w_1_t_28*inv_six_r_w_1_t_49*six_r_w_1_t_33;
-    const real six_r_w_4_t_2 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_28*six_r_w_1_t_39 -
-        six_r_w_1_t_55*six_r_w_4_t);
-    const real six_r_w_4_t_3 = inv_six_r_w_1_t_79*(six_r_w_1_t_61*six_r_w_4_t -
-        inv_six_r_w_1_t_28*six_r_w_1_t_44 + six_r_w_1_t_73*six_r_w_4_t_2);
-    const real six_r_w_4_in_axes5_x = six_r_w_1_t_50*six_r_w_4_t +
-        six_r_w_1_t_68*six_r_w_4_t_2 - six_r_w_1_t_80*six_r_w_4_t_3;
-    const real six_r_w_4_in_axes5_y = six_r_w_1_t_81*six_r_w_4_t_3 -
-        inv_six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_51*six_r_w_4_t -
-        six_r_w_1_t_69*six_r_w_4_t_2;
-    const real six_r_w_4_in_axes5_z = inv_six_r_w_1_t_28*six_r_w_1_t_30 +
-        six_r_w_1_t_52*six_r_w_4_t + six_r_w_1_t_70*six_r_w_4_t_2 -
-        six_r_w_1_t_82*six_r_w_4_t_3;
-    /* (six_r-m1_w_4) moment part 1 of reciprocal wrench 4 */
-    const real six_r_m1_w_4 = m->six_r_size[i]*(inv_six_r_w_1_t_28*six_r_w_1_t_31 +
-        six_r_w_1_t_53*six_r_w_4_t + six_r_w_1_t_71*six_r_w_4_t_2 -
-        six_r_m1_w_1_t*six_r_w_4_t_3);
-    /* (six_r-m2_w_4) moment part 2 of reciprocal wrench 4 */
-    const real six_r_m2_w_4 = m->six_r_size[i]*(inv_six_r_w_1_t_28*six_r_w_1_t_32 +
-        six_r_w_1_t_54*six_r_w_4_t + six_r_w_1_t_72*six_r_w_4_t_2 -
-        six_r_m2_w_1_t*six_r_w_4_t_3);
-    /* (six_r-w_5) force part of reciprocal wrench 5 */
-    const real six_r_w_5_t = inv_six_r_w_1_t_12*inv_six_r_w_1_t_28*six_r_w_1_t_15;
-    const real six_r_w_5_t_2 = inv_six_r_w_1_t_49*(inv_six_r_w_1_t_12*six_r_w_1_t_18 +
-        six_r_w_1_t_33*six_r_w_5_t);
-    const real six_r_w_5_t_3 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_12*six_r_w_1_t_22 +
-        six_r_w_1_t_39*six_r_w_5_t - six_r_w_1_t_55*six_r_w_5_t_2);
-    const real six_r_w_5_t_4 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_12*six_r_w_1_t_25 -
-        six_r_w_1_t_44*six_r_w_5_t + six_r_w_1_t_61*six_r_w_5_t_2 +
-        six_r_w_1_t_73*six_r_w_5_t_3);
-    const real six_r_w_5_t_5 = six_r_w_1_t_50*six_r_w_5_t_2 + six_r_w_1_t_68*six_r_w_5_t_3 -
-        six_r_w_1_t_80*six_r_w_5_t_4;
-    const real six_r_w_5_in_axes5_y = inv_six_r_w_1_t_12*six_r_w_1_t_13 +
-        six_r_w_1_t_29*six_r_w_5_t + six_r_w_1_t_51*six_r_w_5_t_2 +
-        six_r_w_1_t_69*six_r_w_5_t_3 - six_r_w_1_t_81*six_r_w_5_t_4;
-    const real six_r_w_5_in_axes5_z = six_r_w_1_t_82*six_r_w_5_t_4 -
-        six_r_w_1_t_30*six_r_w_5_t - six_r_w_1_t_52*six_r_w_5_t_2 -
-        six_r_w_1_t_70*six_r_w_5_t_3;
-    /* (six_r-m1_w_5) moment part 1 of reciprocal wrench 5 */
-    const real six_r_m1_w_5_t = m->six_r_size[i]*(six_r_w_1_t_31*six_r_w_5_t +
-        six_r_w_1_t_53*six_r_w_5_t_2 + six_r_w_1_t_71*six_r_w_5_t_3 -
-        six_r_m1_w_1_t*six_r_w_5_t_4);
-    /* (six_r-m2_w_5) moment part 2 of reciprocal wrench 5 */
-    const real six_r_m2_w_5_t = m->six_r_size[i]*(six_r_w_1_t_32*six_r_w_5_t -
-        inv_six_r_w_1_t_12*six_r_w_1_t_14 + six_r_w_1_t_54*six_r_w_5_t_2 +
-        six_r_w_1_t_72*six_r_w_5_t_3 - six_r_m2_w_1_t*six_r_w_5_t_4);
-    /* (six_r-o_1) moment part of reciprocal wrench 1 */
-    const real six_r_o_1_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_1_t_2;
-    const real six_r_o_1_t = six_r_end_p1_in_axes5_y*six_r_m2_w_1_t_2;
-    const real six_r_o_1_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_1_t_2 -
-        six_r_m1_w_1_t_2*six_r_n_m1_in_axes5_y;
-    /* (six_r-o_2) moment part of reciprocal wrench 2 */
-    const real six_r_o_2_t = six_r_end_p1_in_axes5_y*six_r_m1_w_2;
-    const real six_r_o_2_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_2;
-    const real six_r_o_2_in_axes5_y = six_r_m1_w_2*six_r_n_m1_in_axes5_y -
-        six_r_end_p1_in_axes5_z*six_r_m2_w_2;
-    /* (six_r-o_3) moment part of reciprocal wrench 3 */
-    const real six_r_o_3_t = six_r_end_p1_in_axes5_y*six_r_m1_w_3;
-    const real six_r_o_3_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_3;
-    const real six_r_o_3_in_axes5_y = six_r_m1_w_3*six_r_n_m1_in_axes5_y -
-        six_r_end_p1_in_axes5_z*six_r_m2_w_3;
-    /* (six_r-o_4) moment part of reciprocal wrench 4 */
-    const real six_r_o_4_t = six_r_end_p1_in_axes5_y*six_r_m1_w_4;
-    const real six_r_o_4_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_4;
-    const real six_r_o_4_in_axes5_y = six_r_m1_w_4*six_r_n_m1_in_axes5_y -
-        six_r_end_p1_in_axes5_z*six_r_m2_w_4;
-    /* (six_r-o_5) moment part of reciprocal wrench 5 */
-    const real six_r_o_5_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_5_t;
-    const real six_r_o_5_t = six_r_end_p1_in_axes5_y*six_r_m2_w_5_t;
-    const real six_r_o_5_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_5_t -
-        six_r_m1_w_5_t*six_r_n_m1_in_axes5_y;
-    /* (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
-    const real six_r_dalpha_alpha_5_in_axes5_xx = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x
-        - v.six_r_e_2_in_axes5_x*six_r_o_3_t - v.six_r_e_4_in_axes5_x*six_r_o_4_t -
-        v.six_r_e_2_in_axes5_x*six_r_o_2_t;
-    const real six_r_dalpha_alpha_5_in_axes5_xy = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y
-        + v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
-        v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y +
-        v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_xz = v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z
-        + v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_x*six_r_o_1_t +
-        v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z;
-    const real six_r_dalpha_alpha_5_in_axes5_yx = v.six_r_J_5_t*six_r_o_4_t +
-        v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_y*six_r_o_3_t -
-        v.six_r_e_2_in_axes5_y*six_r_o_2_t;
-    const real six_r_dalpha_alpha_5_in_axes5_yy = v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y
-        + v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v.six_r_J_5_t*six_r_o_4_in_axes5_y +
-        v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_yz = v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z
-        - v.six_r_J_5_t*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_y*six_r_o_1_t +
-        v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z;
-    const real six_r_dalpha_alpha_5_in_axes5_zx = six_r_o_5_in_axes5_x +
-        v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_z*six_r_o_3_t -
-        v.six_r_e_2_in_axes5_z*six_r_o_2_t;
-    const real six_r_dalpha_alpha_5_in_axes5_zy = six_r_o_5_in_axes5_y +
-        v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
-        v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y +
-        v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_zz = v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z
-        - six_r_o_5_t - v.six_r_e_1_in_axes5_z*six_r_o_1_t +
-        v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z;
-    /* (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
-    const real six_r_d_alpha_5_in_axes5_xz = v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
-        v.six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z +
-        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z +
-        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z;
-    const real six_r_d_alpha_5_in_axes5_yz = v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
-        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v.six_r_J_5_t*six_r_w_4_in_axes5_z +
-        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z;
-    const real six_r_d_alpha_5_in_axes5_zy = six_r_w_5_in_axes5_y +
-        v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y - v.six_r_e_2_in_axes5_z*six_r_w_3_t +
-        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y;
-    const real six_r_d_alpha_5_in_axes5_zz = six_r_w_5_in_axes5_z +
-        v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
-        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z +
-        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z;
-    /* (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning
-       about its reference point */
-    const real six_r_d_phi_5_in_axes5_xx =
-        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
-        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v.six_r_J_5_t*six_r_w_4_in_axes5_x +
-        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x) -
-        m->six_r_h_5_in_spec5_y[i]*(v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
-        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5 +
-        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x);
-    /* (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal
-       links' inertia and weight */
-    const real six_r_dalpha_Gamma_5_in_axes5_x = v.six_r_D_1_5*six_r_o_1_in_axes5_x +
-        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_x - v.six_r_D_3_5*six_r_o_3_t -
-        v.six_r_J_5_in_axes4_yz*six_r_o_4_t - v.six_r_D_3_5*six_r_o_2_t;
-    const real six_r_dalpha_Gamma_5_in_axes5_y = v.six_r_D_1_5*six_r_o_1_in_axes5_y +
-        v.six_r_D_3_5*six_r_o_3_in_axes5_y + v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
-        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_y + v.six_r_D_3_5*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_Gamma_5_in_axes5_z = v.six_r_D_3_5*six_r_o_3_in_axes5_z +
-        v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_1_t -
-        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_t + v.six_r_D_3_5*six_r_o_2_in_axes5_z;
-    /* (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links'
-       inertia and weight */
-    const real six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*m->six_r_J_5_in_spec5_zz[i];
-    const real six_r_d_Gamma_5_t_2 = inv_six_r_w_1_t_28*(v.six_r_J_5_in_axes4_yz -
-        six_r_d_Gamma_5_t*six_r_w_1_t_15);
-    const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(v.six_r_D_1_5 -
-        six_r_d_Gamma_5_t*six_r_w_1_t_18 + six_r_d_Gamma_5_t_2*six_r_w_1_t_33);
-    const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(v.six_r_D_3_5 -
-        six_r_d_Gamma_5_t*six_r_w_1_t_22 + six_r_d_Gamma_5_t_2*six_r_w_1_t_39 -
-        six_r_d_Gamma_5_t_3*six_r_w_1_t_55);
-    const real six_r_d_Gamma_5_t_5 = inv_six_r_w_1_t_79*(v.six_r_D_3_5 +
-        six_r_d_Gamma_5_t*six_r_w_1_t_25 + six_r_d_Gamma_5_t_2*six_r_w_1_t_44 -
-        six_r_d_Gamma_5_t_3*six_r_w_1_t_61 - six_r_d_Gamma_5_t_4*six_r_w_1_t_73);
-    const real six_r_d_Gamma_5_in_axes5_z = six_r_d_Gamma_5_t_2*six_r_w_1_t_30 +
-        six_r_d_Gamma_5_t_3*six_r_w_1_t_52 + six_r_d_Gamma_5_t_4*six_r_w_1_t_70 +
-        six_r_d_Gamma_5_t_5*six_r_w_1_t_82;
-    const real six_r_d_Gamma_5_in_axes5_x = six_r_d_Gamma_5_t_3*six_r_w_1_t_50 -
-        m->six_r_h_5_in_spec5_y[i] + six_r_d_Gamma_5_t_4*six_r_w_1_t_68 +
-        six_r_d_Gamma_5_t_5*six_r_w_1_t_80;
-    const real six_r_d_Gamma_5_in_axes5_y = m->six_r_h_5_in_spec5_x[i] +
-        six_r_d_Gamma_5_t*six_r_w_1_t_13 - six_r_d_Gamma_5_t_2*six_r_w_1_t_29 -
-        six_r_d_Gamma_5_t_3*six_r_w_1_t_51 - six_r_d_Gamma_5_t_4*six_r_w_1_t_69 -
-        six_r_d_Gamma_5_t_5*six_r_w_1_t_81;
-    /* (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
-       links' inertia and weight */
-    const real six_r_dalpha_Gamma_4_in_axes5_x = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_x
-        + v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x -
-        v.six_r_Jc_4_in_axes4_zz*six_r_o_4_t - v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_t -
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_t;
-    const real six_r_dalpha_Gamma_4_in_axes5_y = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_y
-        + v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_Gamma_4_in_axes5_z = v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z
-        + v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z -
-        v.six_r_J_5_in_axes4_yz*six_r_o_5_t - v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_t +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z;
-    /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
-       inertia and weight */
-    const real six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*v.six_r_J_5_in_axes4_yz;
-    const real six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_28*(v.six_r_Jc_4_in_axes4_zz -
-        six_r_d_Gamma_4_t*six_r_w_1_t_15);
-    const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(v.six_r_L_c_4_2_in_axes1_z -
-        six_r_d_Gamma_4_t*six_r_w_1_t_18 + six_r_d_Gamma_4_t_2*six_r_w_1_t_33);
-    const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(v.six_r_L_c_4_2_in_axes2_z -
-        six_r_d_Gamma_4_t*six_r_w_1_t_22 + six_r_d_Gamma_4_t_2*six_r_w_1_t_39 -
-        six_r_d_Gamma_4_t_3*six_r_w_1_t_55);
-    const real six_r_d_Gamma_4_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_4_3_in_axes3_z +
-        six_r_d_Gamma_4_t*six_r_w_1_t_25 + six_r_d_Gamma_4_t_2*six_r_w_1_t_44 -
-        six_r_d_Gamma_4_t_3*six_r_w_1_t_61 - six_r_d_Gamma_4_t_4*six_r_w_1_t_73);
-    const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_3*six_r_w_1_t_50 -
-        v.six_r_J_5_t*m->six_r_h_5_in_spec5_z[i] + six_r_d_Gamma_4_t_4*six_r_w_1_t_68 +
-        six_r_d_Gamma_4_t_5*six_r_w_1_t_80;
-    const real six_r_d_Gamma_4_in_axes5_y = six_r_d_Gamma_4_t*six_r_w_1_t_13 -
-        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_z[i] - six_r_d_Gamma_4_t_2*six_r_w_1_t_29
-        - six_r_d_Gamma_4_t_3*six_r_w_1_t_51 - six_r_d_Gamma_4_t_4*six_r_w_1_t_69 -
-        six_r_d_Gamma_4_t_5*six_r_w_1_t_81;
-    const real six_r_d_Gamma_4_in_axes5_z = v.six_r_J_5_t*m->six_r_h_5_in_spec5_x[i] +
-        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_y[i] + six_r_d_Gamma_4_t_2*six_r_w_1_t_30
-        + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 + six_r_d_Gamma_4_t_4*six_r_w_1_t_70 +
-        six_r_d_Gamma_4_t_5*six_r_w_1_t_82;
-    /* (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
-       links' inertia and weight */
-    const real six_r_dalpha_Gamma_3_t = v.six_r_D_3_5*six_r_o_5_in_axes5_x;
-    const real six_r_dalpha_Gamma_3_t_2 = v.six_r_D_3_5*six_r_o_5_in_axes5_y;
-    const real six_r_dalpha_Gamma_3_t_3 = v.six_r_D_3_5*six_r_o_5_t;
-    const real six_r_dalpha_Gamma_3_in_axes5_x =
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_x - v.six_r_Jc_3_in_axes3_zz*six_r_o_3_t
-        - v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_t + six_r_dalpha_Gamma_3_t -
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_t;
-    const real six_r_dalpha_Gamma_3_in_axes5_y = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y
-        + v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y + six_r_dalpha_Gamma_3_t_2 +
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_Gamma_3_in_axes5_z = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z
-        + v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z -
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_t +
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
-    /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-       inertia and weight */
-    const real six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*v.six_r_D_3_5;
-    const real six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_15;
-    const real six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_3_in_axes3_z -
-        six_r_d_Gamma_3_t_5);
-    const real six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18;
-    const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(v.six_r_L_c_3_2_in_axes1_z -
-        six_r_d_Gamma_3_t_7 + six_r_d_Gamma_3_t_6*six_r_w_1_t_33);
-    const real six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_22;
-    const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(v.six_r_L_c_3_2_in_axes2_z -
-        six_r_d_Gamma_3_t_9 + six_r_d_Gamma_3_t_6*six_r_w_1_t_39 -
-        six_r_d_Gamma_3_t_8*six_r_w_1_t_55);
-    const real six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25;
-    const real six_r_d_Gamma_3_t_12 = inv_six_r_w_1_t_79*(v.six_r_Jc_3_in_axes3_zz +
-        six_r_d_Gamma_3_t_11 + six_r_d_Gamma_3_t_6*six_r_w_1_t_44 -
-        six_r_d_Gamma_3_t_8*six_r_w_1_t_61 - six_r_d_Gamma_3_t_10*six_r_w_1_t_73);
-    const real six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_13;
-    const real six_r_d_Gamma_3_in_axes5_x = v.six_r_d_Gamma_3_t +
-        six_r_d_Gamma_3_t_8*six_r_w_1_t_50 + six_r_d_Gamma_3_t_10*six_r_w_1_t_68 +
-        six_r_d_Gamma_3_t_12*six_r_w_1_t_80;
-    const real six_r_d_Gamma_3_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
-        six_r_d_Gamma_3_t_6*six_r_w_1_t_29 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51 -
-        six_r_d_Gamma_3_t_10*six_r_w_1_t_69 - six_r_d_Gamma_3_t_12*six_r_w_1_t_81;
-    const real six_r_d_Gamma_3_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
-        six_r_d_Gamma_3_t_6*six_r_w_1_t_30 + six_r_d_Gamma_3_t_8*six_r_w_1_t_52 +
-        six_r_d_Gamma_3_t_10*six_r_w_1_t_70 + six_r_d_Gamma_3_t_12*six_r_w_1_t_82;
-    /* (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-       links' inertia and weight */
-    const real six_r_dalpha_Gamma_2_in_axes5_x = v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x
-        - v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_t +
-        six_r_dalpha_Gamma_3_t - v.six_r_Jc_2_in_axes2_zz*six_r_o_2_t;
-    const real six_r_dalpha_Gamma_2_in_axes5_y = v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y
-        + v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y + six_r_dalpha_Gamma_3_t_2 +
-        v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_Gamma_2_in_axes5_z =
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - v.six_r_Jc_2_in_axes1_yz*six_r_o_1_t
-        + v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
-    /* (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
-    const real six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes2_z -
-        six_r_d_Gamma_3_t_5);
-    const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(v.six_r_Jc_2_in_axes1_yz -
-        six_r_d_Gamma_3_t_7 + six_r_d_Gamma_2_t*six_r_w_1_t_33);
-    const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes2_zz -
-        six_r_d_Gamma_3_t_9 + six_r_d_Gamma_2_t*six_r_w_1_t_39 -
-        six_r_d_Gamma_2_t_2*six_r_w_1_t_55);
-    const real six_r_d_Gamma_2_t_4 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes2_z +
-        six_r_d_Gamma_3_t_11 + six_r_d_Gamma_2_t*six_r_w_1_t_44 -
-        six_r_d_Gamma_2_t_2*six_r_w_1_t_61 - six_r_d_Gamma_2_t_3*six_r_w_1_t_73);
-    const real six_r_d_Gamma_2_in_axes5_x = v.six_r_d_Gamma_3_t +
-        six_r_d_Gamma_2_t_2*six_r_w_1_t_50 + six_r_d_Gamma_2_t_3*six_r_w_1_t_68 +
-        six_r_d_Gamma_2_t_4*six_r_w_1_t_80;
-    const real six_r_d_Gamma_2_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
-        six_r_d_Gamma_2_t*six_r_w_1_t_29 - six_r_d_Gamma_2_t_2*six_r_w_1_t_51 -
-        six_r_d_Gamma_2_t_3*six_r_w_1_t_69 - six_r_d_Gamma_2_t_4*six_r_w_1_t_81;
-    const real six_r_d_Gamma_2_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
-        six_r_d_Gamma_2_t*six_r_w_1_t_30 + six_r_d_Gamma_2_t_2*six_r_w_1_t_52 +
-        six_r_d_Gamma_2_t_3*six_r_w_1_t_70 + six_r_d_Gamma_2_t_4*six_r_w_1_t_82;
-    /* (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-       links' inertia and weight */
-    const real six_r_dalpha_Gamma_1_in_axes5_x = v.six_r_D_1_5*six_r_o_5_in_axes5_x +
-        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_t
-        - v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_t - v.six_r_Jc_2_in_axes1_yz*six_r_o_2_t;
-    const real six_r_dalpha_Gamma_1_in_axes5_y = v.six_r_D_1_5*six_r_o_5_in_axes5_y +
-        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y +
-        v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_Gamma_1_in_axes5_z =
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
-        v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_5_t -
-        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_t + v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z;
-    /* (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
-    const real six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*v.six_r_D_1_5;
-    const real six_r_d_Gamma_1_t_2 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes1_z -
-        six_r_d_Gamma_1_t*six_r_w_1_t_15);
-    const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(v.six_r_Jc_1_in_axes1_zz -
-        six_r_d_Gamma_1_t*six_r_w_1_t_18 + six_r_d_Gamma_1_t_2*six_r_w_1_t_33);
-    const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes1_yz -
-        six_r_d_Gamma_1_t*six_r_w_1_t_22 + six_r_d_Gamma_1_t_2*six_r_w_1_t_39 -
-        six_r_d_Gamma_1_t_3*six_r_w_1_t_55);
-    const real six_r_d_Gamma_1_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes1_z +
-        six_r_d_Gamma_1_t*six_r_w_1_t_25 + six_r_d_Gamma_1_t_2*six_r_w_1_t_44 -
-        six_r_d_Gamma_1_t_3*six_r_w_1_t_61 - six_r_d_Gamma_1_t_4*six_r_w_1_t_73);
-    const real six_r_d_Gamma_1_in_axes5_x = v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_z[i]
-        - v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_y[i] +
-        six_r_d_Gamma_1_t_3*six_r_w_1_t_50 + six_r_d_Gamma_1_t_4*six_r_w_1_t_68 +
-        six_r_d_Gamma_1_t_5*six_r_w_1_t_80;
-    const real six_r_d_Gamma_1_in_axes5_y = v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_x[i]
-        - v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_z[i] + six_r_d_Gamma_1_t*six_r_w_1_t_13
-        - six_r_d_Gamma_1_t_2*six_r_w_1_t_29 - six_r_d_Gamma_1_t_3*six_r_w_1_t_51 -
-        six_r_d_Gamma_1_t_4*six_r_w_1_t_69 - six_r_d_Gamma_1_t_5*six_r_w_1_t_81;
-    const real six_r_d_Gamma_1_in_axes5_z = v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_y[i]
-        - v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_x[i] +
-        six_r_d_Gamma_1_t_2*six_r_w_1_t_30 + six_r_d_Gamma_1_t_3*six_r_w_1_t_52 +
-        six_r_d_Gamma_1_t_4*six_r_w_1_t_70 + six_r_d_Gamma_1_t_5*six_r_w_1_t_82;
-    /* (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real six_r_dalpha_G_m1_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m1_w_2 +
-        six_r_dalpha_Gamma_3_in_axes5_x*six_r_m1_w_3 +
-        six_r_dalpha_Gamma_4_in_axes5_x*six_r_m1_w_4 -
-        six_r_dalpha_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2 -
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_m1_w_5_t;
-    const real six_r_dalpha_G_m1_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m1_w_2 +
-        six_r_dalpha_Gamma_3_in_axes5_y*six_r_m1_w_3 +
-        six_r_dalpha_Gamma_4_in_axes5_y*six_r_m1_w_4 -
-        six_r_dalpha_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2 -
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_m1_w_5_t;
-    const real six_r_dalpha_G_m1_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m1_w_2 +
-        six_r_dalpha_Gamma_3_in_axes5_z*six_r_m1_w_3 +
-        six_r_dalpha_Gamma_4_in_axes5_z*six_r_m1_w_4 -
-        six_r_dalpha_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2 -
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_m1_w_5_t;
-    const real six_r_dalpha_G_m1_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_x +
-        axis_y_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_y +
-        axis_z_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_z;
-    const real six_r_dalpha_G_m1_z = axis_x_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_x +
-        axis_y_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_y +
-        axis_z_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_z;
-    /* (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real six_r_d_G_m1_in_axes5_x = six_r_d_Gamma_3_in_axes5_x*six_r_m1_w_3 +
-        six_r_d_Gamma_4_in_axes5_x*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2
-        - six_r_d_Gamma_5_in_axes5_x*six_r_m1_w_5_t + six_r_d_Gamma_2_in_axes5_x*six_r_m1_w_2;
-    const real six_r_d_G_m1_in_axes5_y = six_r_d_Gamma_3_in_axes5_y*six_r_m1_w_3 +
-        six_r_d_Gamma_4_in_axes5_y*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2
-        - six_r_d_Gamma_5_in_axes5_y*six_r_m1_w_5_t + six_r_d_Gamma_2_in_axes5_y*six_r_m1_w_2;
-    const real six_r_d_G_m1_in_axes5_z = six_r_d_Gamma_3_in_axes5_z*six_r_m1_w_3 +
-        six_r_d_Gamma_4_in_axes5_z*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2
-        - six_r_d_Gamma_5_in_axes5_z*six_r_m1_w_5_t + six_r_d_Gamma_2_in_axes5_z*six_r_m1_w_2;
-    const real six_r_d_G_m1_x = axis_x_six_r_axes5_x*six_r_d_G_m1_in_axes5_x +
-        axis_y_six_r_axes5_x*six_r_d_G_m1_in_axes5_y +
-        axis_z_six_r_axes5_x*six_r_d_G_m1_in_axes5_z;
-    const real six_r_d_G_m1_y = axis_x_six_r_axes5_y*six_r_d_G_m1_in_axes5_x +
-        axis_y_six_r_axes5_y*six_r_d_G_m1_in_axes5_y +
-        axis_z_six_r_axes5_y*six_r_d_G_m1_in_axes5_z;
-    const real six_r_d_G_m1_z = axis_x_six_r_axes5_z*six_r_d_G_m1_in_axes5_x +
-        axis_y_six_r_axes5_z*six_r_d_G_m1_in_axes5_y +
-        axis_z_six_r_axes5_z*six_r_d_G_m1_in_axes5_z;
-    /* (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real six_r_dalpha_G_m2_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
-        six_r_dalpha_Gamma_3_in_axes5_x*six_r_m2_w_3 +
-        six_r_dalpha_Gamma_4_in_axes5_x*six_r_m2_w_4 -
-        six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
-    const real six_r_dalpha_G_m2_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
-        six_r_dalpha_Gamma_3_in_axes5_y*six_r_m2_w_3 +
-        six_r_dalpha_Gamma_4_in_axes5_y*six_r_m2_w_4 -
-        six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
-    const real six_r_dalpha_G_m2_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
-        six_r_dalpha_Gamma_3_in_axes5_z*six_r_m2_w_3 +
-        six_r_dalpha_Gamma_4_in_axes5_z*six_r_m2_w_4 -
-        six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
-    const real six_r_dalpha_G_m2_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_x +
-        axis_y_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_z;
-    const real six_r_dalpha_G_m2_z = axis_x_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_x +
-        axis_y_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_z;
-    /* (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 +
-        six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2
-        - six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t + six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2;
-    const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 +
-        six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2
-        - six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t + six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2;
-    const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 +
-        six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2
-        - six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t + six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2;
-    const real six_r_d_G_m2_x = axis_x_six_r_axes5_x*six_r_d_G_m2_in_axes5_x +
-        axis_y_six_r_axes5_x*six_r_d_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_x*six_r_d_G_m2_in_axes5_z;
-    const real six_r_d_G_m2_y = axis_x_six_r_axes5_y*six_r_d_G_m2_in_axes5_x +
-        axis_y_six_r_axes5_y*six_r_d_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_y*six_r_d_G_m2_in_axes5_z;
-    const real six_r_d_G_m2_z = axis_x_six_r_axes5_z*six_r_d_G_m2_in_axes5_x +
-        axis_y_six_r_axes5_z*six_r_d_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_z*six_r_d_G_m2_in_axes5_z;
-    /* (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real six_r_d_G_m_xx = six_r_d_G_m1_x*six_r_n_m1_x + six_r_d_G_m2_x*six_r_n_m2_x;
-    const real six_r_d_G_m_xy = six_r_d_G_m1_y*six_r_n_m1_x + six_r_d_G_m2_y*six_r_n_m2_x;
-    const real six_r_d_G_m_xz = six_r_d_G_m1_z*six_r_n_m1_x + six_r_d_G_m2_z*six_r_n_m2_x;
-    const real six_r_d_G_m_yx = six_r_d_G_m1_x*six_r_n_m1_y + six_r_d_G_m2_x*six_r_n_m2_y;
-    /* (six_r-dalpha_c) coefficient of the acceleration in: leg force on the platform without
-       actuation and without the mass at the connection point */
-    const real six_r_dalpha_c_in_axes5_xx =
-        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_y[i] -
-        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_z[i] +
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
-        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
-        six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
-        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
-        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x;
-    const real six_r_dalpha_c_in_axes5_xy =
-        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
-        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_z[i] +
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_t_5 -
-        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
-        six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
-        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
-        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x;
-    const real six_r_dalpha_c_in_axes5_xz =
-        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
-        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] +
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_t_5 -
-        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
-        six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
-        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
-        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x;
-    const real six_r_dalpha_c_in_axes5_yx =
-        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_z[i] -
-        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] +
-        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_t -
-        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_y -
-        six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_y -
-        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_y -
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_y;
-    const real six_r_dalpha_c_in_axes5_yy =
-        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_z[i] -
-        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i] +
-        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_t -
-        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
-        six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
-        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y;
-    const real six_r_dalpha_c_in_axes5_yz =
-        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
-        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i] +
-        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_t -
-        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
-        six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
-        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y;
-    const real six_r_dalpha_c_in_axes5_zx =
-        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
-        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_y[i] -
-        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_z -
-        six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_z -
-        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_z -
-        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_z -
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_z;
-    const real six_r_dalpha_c_in_axes5_zy =
-        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_x[i] -
-        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
-        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_z -
-        six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_z -
-        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_z -
-        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_z -
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_z;
-    const real six_r_dalpha_c_in_axes5_zz =
-        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i] -
-        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i] -
-        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z -
-        six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z -
-        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z -
-        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z -
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z;
-    /* (six_r-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real six_r_d_c_in_axes5_xx = six_r_d_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
-        six_r_d_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
-        six_r_d_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
-        six_r_d_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x -
-        six_r_d_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x - six_r_d_phi_5_in_axes5_xx;
-    const real six_r_d_c_in_axes5_xy = six_r_d_Gamma_5_in_axes5_y*six_r_w_5_t_5 -
-        six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
-        six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
-        six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
-        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x +
-        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
-        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y -
-        v.six_r_J_5_t*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_y*six_r_w_3_t +
-        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y);
-    const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 -
-        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
-        six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
-        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
-        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x +
-        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
-        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_d_c_in_axes5_yy = six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t -
-        six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
-        six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
-        six_r_d_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
-        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y +
-        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
-        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_x*six_r_w_3_t +
-        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y) -
-        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i];
-    const real six_r_d_c_in_axes5_yz = six_r_d_Gamma_3_in_axes5_z*six_r_w_3_t -
-        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
-        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
-        six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
-        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y +
-        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
-        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i];
-    /* (six_r-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real six_r_Q_t = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy;
-    const real six_r_Q_t_2 = R(0.5)*six_r_Q_t;
-    const real six_r_Q_t_3 = six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
-        six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z +
-        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z +
-        six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z +
-        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z +
-        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i] -
-        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i] + six_r_d_c_in_axes5_xx;
-    const real six_r_Q_t_4 = R(0.5)*six_r_Q_t_3;
-    const real six_r_Q_t_5 = axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xy +
-        axis_z_six_r_axes5_x*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_x*six_r_Q_t_2;
-    const real six_r_Q_t_6 = axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xy +
-        axis_z_six_r_axes5_y*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_y*six_r_Q_t_2;
-    const real six_r_Q_t_7 = axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xy +
-        axis_z_six_r_axes5_z*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_z*six_r_Q_t_2;
-    const real six_r_Q_t_8 = axis_z_six_r_axes5_x*six_r_Q_t_4 -
-        axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xz;
-    const real six_r_Q_t_9 = axis_z_six_r_axes5_y*six_r_Q_t_4 -
-        axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xz;
-    const real six_r_Q_t_10 = axis_z_six_r_axes5_z*six_r_Q_t_4 -
-        axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xz;
-    const real six_r_Q_t_11 = axis_y_six_r_axes5_x*six_r_Q_t_5 -
-        axis_z_six_r_axes5_x*six_r_Q_t_8;
-    const real six_r_Q_xx = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_11;
-    const real six_r_Q_xy = axis_z_six_r_axes5_x*six_r_Q_t_9 +
-        axis_z_six_r_axes5_y*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_6 -
-        axis_y_six_r_axes5_y*six_r_Q_t_5;
-    const real six_r_Q_xz = axis_z_six_r_axes5_x*six_r_Q_t_10 +
-        axis_z_six_r_axes5_z*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_7 -
-        axis_y_six_r_axes5_z*six_r_Q_t_5;
-    const real six_r_Q_t_12 = axis_y_six_r_axes5_y*six_r_Q_t_6 -
-        axis_z_six_r_axes5_y*six_r_Q_t_9;
-    const real six_r_Q_yy = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_12;
-    const real six_r_Q_yz = axis_z_six_r_axes5_y*six_r_Q_t_10 +
-        axis_z_six_r_axes5_z*six_r_Q_t_9 - axis_y_six_r_axes5_y*six_r_Q_t_7 -
-        axis_y_six_r_axes5_z*six_r_Q_t_6;
-    const real six_r_Q_t_13 = axis_y_six_r_axes5_z*six_r_Q_t_7 -
-        axis_z_six_r_axes5_z*six_r_Q_t_10;
-    const real six_r_Q_zz = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_13;
-    /* (M_ta) coupling block of M */
-    const real six_r_M_ta_t = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xx +
-        axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yx +
-        axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zx;
-    const real six_r_M_ta_t_2 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xx +
-        axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yx +
-        axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zx;
-    const real six_r_M_ta_t_3 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xx +
-        axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yx +
-        axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zx;
-    const real six_r_M_ta_t_4 = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xy +
-        axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yy +
-        axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zy;
-    const real six_r_M_ta_t_5 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xy +
-        axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yy +
-        axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zy;
-    const real six_r_M_ta_t_6 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xy +
-        axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yy +
-        axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zy;
-    const real six_r_M_ta_t_7 = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xz +
-        axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yz +
-        axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zz;
-    const real six_r_M_ta_t_8 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xz +
-        axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yz +
-        axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zz;
-    const real six_r_M_ta_t_9 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xz +
-        axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
-        axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz;
-    const real six_r_M_ta_t_10 = -six_r_Q_xy*v.six_r_q_z;
-    const real six_r_M_ta_t_11 = six_r_Q_xz*v.six_r_q_y;
-    const real six_r_M_ta_t_12 = six_r_Q_yz*v.six_r_q_x;
-    const real six_r_M_ta_t_13 = six_r_M_ta_t_10 + six_r_M_ta_t_11 -
-        axis_x_six_r_axes5_x*six_r_M_ta_t - axis_y_six_r_axes5_x*six_r_M_ta_t_4 -
-        axis_z_six_r_axes5_x*six_r_M_ta_t_7;
-    const real six_r_M_ta_t_14 = six_r_Q_xx*v.six_r_q_z - six_r_Q_xz*v.six_r_q_x -
-        axis_x_six_r_axes5_y*six_r_M_ta_t - axis_y_six_r_axes5_y*six_r_M_ta_t_4 -
-        axis_z_six_r_axes5_y*six_r_M_ta_t_7;
-    const real six_r_M_ta_t_15 = six_r_Q_xy*v.six_r_q_x - six_r_Q_xx*v.six_r_q_y -
-        axis_x_six_r_axes5_z*six_r_M_ta_t - axis_y_six_r_axes5_z*six_r_M_ta_t_4 -
-        axis_z_six_r_axes5_z*six_r_M_ta_t_7;
-    const real six_r_M_ta_t_16 = six_r_Q_yz*v.six_r_q_y - six_r_Q_yy*v.six_r_q_z -
-        axis_x_six_r_axes5_x*six_r_M_ta_t_2 - axis_y_six_r_axes5_x*six_r_M_ta_t_5 -
-        axis_z_six_r_axes5_x*six_r_M_ta_t_8;
-    const real six_r_M_ta_t_17 = six_r_M_ta_t_10 + six_r_M_ta_t_12 +
-        axis_x_six_r_axes5_y*six_r_M_ta_t_2 + axis_y_six_r_axes5_y*six_r_M_ta_t_5 +
-        axis_z_six_r_axes5_y*six_r_M_ta_t_8;
-    const real six_r_M_ta_t_18 = six_r_Q_yy*v.six_r_q_x - six_r_Q_xy*v.six_r_q_y -
-        axis_x_six_r_axes5_z*six_r_M_ta_t_2 - axis_y_six_r_axes5_z*six_r_M_ta_t_5 -
-        axis_z_six_r_axes5_z*six_r_M_ta_t_8;
-    const real six_r_M_ta_t_19 = six_r_Q_zz*v.six_r_q_y - six_r_Q_yz*v.six_r_q_z -
-        axis_x_six_r_axes5_x*six_r_M_ta_t_3 - axis_y_six_r_axes5_x*six_r_M_ta_t_6 -
-        axis_z_six_r_axes5_x*six_r_M_ta_t_9;
-    const real six_r_M_ta_t_20 = six_r_Q_xz*v.six_r_q_z - six_r_Q_zz*v.six_r_q_x -
-        axis_x_six_r_axes5_y*six_r_M_ta_t_3 - axis_y_six_r_axes5_y*six_r_M_ta_t_6 -
-        axis_z_six_r_axes5_y*six_r_M_ta_t_9;
-    const real six_r_M_ta_t_21 = six_r_M_ta_t_12 - six_r_M_ta_t_11 -
-        axis_x_six_r_axes5_z*six_r_M_ta_t_3 - axis_y_six_r_axes5_z*six_r_M_ta_t_6 -
-        axis_z_six_r_axes5_z*six_r_M_ta_t_9;
-    /* (M_aa) rotational block of M */
-    const real six_r_M_aa_t = six_r_d_G_m_xz*v.six_r_q_y - six_r_d_G_m_xy*v.six_r_q_z +
-        six_r_n_m1_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_x +
-        axis_y_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_y +
-        axis_z_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_z) +
-        six_r_n_m2_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_x +
-        axis_y_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) + six_r_M_ta_t_19*v.six_r_q_y -
-        six_r_M_ta_t_16*v.six_r_q_z;
-    const real six_r_M_aa_t_2 = six_r_d_G_m_xx*v.six_r_q_z - six_r_d_G_m_xz*v.six_r_q_x +
-        six_r_dalpha_G_m1_y*six_r_n_m1_x + six_r_dalpha_G_m2_y*six_r_n_m2_x +
-        six_r_M_ta_t_17*v.six_r_q_z + six_r_M_ta_t_20*v.six_r_q_y;
-    const real six_r_M_aa_t_3 = six_r_d_G_m_xy*v.six_r_q_x - six_r_d_G_m_xx*v.six_r_q_y +
-        six_r_dalpha_G_m1_z*six_r_n_m1_x + six_r_dalpha_G_m2_z*six_r_n_m2_x +
-        six_r_M_ta_t_21*v.six_r_q_y - six_r_M_ta_t_18*v.six_r_q_z;
-    const real six_r_M_aa_t_4 = six_r_d_G_m_yx*v.six_r_q_z -
-        v.six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y + six_r_d_G_m2_z*six_r_n_m2_y) +
-        six_r_dalpha_G_m1_y*six_r_n_m1_y + six_r_dalpha_G_m2_y*six_r_n_m2_y +
-        six_r_M_ta_t_14*v.six_r_q_z - six_r_M_ta_t_20*v.six_r_q_x;
-    const real six_r_M_aa_t_5 = v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
-        six_r_d_G_m2_y*six_r_n_m2_y) - six_r_d_G_m_yx*v.six_r_q_y +
-        six_r_dalpha_G_m1_z*six_r_n_m1_y + six_r_dalpha_G_m2_z*six_r_n_m2_y +
-        six_r_M_ta_t_15*v.six_r_q_z - six_r_M_ta_t_21*v.six_r_q_x;
-    const real six_r_M_aa_t_6 = v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
-        six_r_d_G_m2_y*six_r_n_m2_z) - v.six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z +
-        six_r_d_G_m2_x*six_r_n_m2_z) + six_r_dalpha_G_m1_z*six_r_n_m1_z +
-        six_r_dalpha_G_m2_z*six_r_n_m2_z + six_r_M_ta_t_18*v.six_r_q_x -
-        six_r_M_ta_t_15*v.six_r_q_y;
+    stage_six_r_X_q(m, i, &v);
+    stage_six_r_M_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, six_r_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, six_r_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, six_r_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, six_r_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, six_r_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, six_r_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, six_r_M_ta_t_13);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, six_r_M_ta_t_17);  /* M_ta_t */
-    gather(&terms[11*count + k], add, six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, six_r_M_ta_t_21);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, six_r_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, six_r_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, six_r_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, six_r_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, six_r_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, six_r_M_aa_t_6);  /* M_aa_zz_of_legs */
-    o[0*count + k] = UNLESS(magnitude(six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
+    gather(&terms[0*count + k], add, v.six_r_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.six_r_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.six_r_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.six_r_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.six_r_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.six_r_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.six_r_M_ta_t_13);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.six_r_M_ta_t_17);  /* M_ta_t */
+    gather(&terms[11*count + k], add, v.six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.six_r_M_ta_t_21);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.six_r_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.six_r_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.six_r_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.six_r_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.six_r_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.six_r_M_aa_t_6);  /* M_aa_zz_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
-INLINE void M_place_six_r(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_six_r(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -6493,37 +5079,37 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -6577,9 +5163,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
-APART void M_run(const prepared *m, const real *X, const real *joints, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, const real *joints, real *M, status_flags *t)
 {
-    real s[18] = {0}, sums[21] = {0};
+    real s[27] = {0}, sums[21] = {0};
     real terms_six_r[21*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[LEGS(LEGS_OF_six_r)] = {0};
     values v;
     M_before(m, 1, 0, X, &v, s, t);
@@ -6592,19 +5178,17 @@ APART void M_run(const prepared *m, const real *X, const real *joints, real *M, 
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
-    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
 INLINE void M_run_lanes(const prepared *m, const real *X, const real *joints, real *restrict M,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[18*LANES], sums[21*LANES];
+    real s[27*LANES], sums[21*LANES];
     real o_six_r[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         M_before(m, LANES, k, X, &v, s, t);
-        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
@@ -6622,7 +5206,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, const real *joints, re
 
 /* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -6639,14 +5223,13 @@ INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, value
 
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[9*w + k] = v->Z_p_x;
-    s[10*w + k] = v->Z_p_y;
-    s[11*w + k] = v->Z_p_z;
-    s[12*w + k] = v->Z_q_x;
-    s[13*w + k] = v->Z_q_y;
-    s[14*w + k] = v->Z_q_z;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -6658,643 +5241,49 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     stage_six_r_V_X(w, j, V, &v);
     stage_six_r_V_q(w, j, V, &v);
     stage_six_r_X_q(m, i, &v);
-    stage_six_r_V_X_q(&v);
+    stage_six_r_V_X_q(m, i, &v);
     stage_six_r_Z_dynamics(m, w, i, j, V, &v);
-    stage_six_r_Z_joint_accelerations(&v);
-    /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
-    const real omega_x = V[3*w + j];
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real six_r_eta_1 = omega_x*(v.axis_y_six_r_axes5_x*v.six_r_n_m1_in_axes5_y -
-        v.axis_x_six_r_axes5_x*v.six_r_n_m2_in_axes5_z) +
-        omega_y*(v.axis_y_six_r_axes5_y*v.six_r_n_m1_in_axes5_y -
-        v.axis_x_six_r_axes5_y*v.six_r_n_m2_in_axes5_z) +
-        omega_z*(v.axis_y_six_r_axes5_z*v.six_r_n_m1_in_axes5_y -
-        v.axis_x_six_r_axes5_z*v.six_r_n_m2_in_axes5_z);
-    /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
-    const real six_r_eta_2 = omega_x*(v.axis_z_six_r_axes5_x*v.six_r_n_m2_in_axes5_z -
-        v.axis_y_six_r_axes5_x*v.six_r_end_p1_in_axes5_z) +
-        omega_y*(v.axis_z_six_r_axes5_y*v.six_r_n_m2_in_axes5_z -
-        v.axis_y_six_r_axes5_y*v.six_r_end_p1_in_axes5_z) +
-        omega_z*(v.axis_z_six_r_axes5_z*v.six_r_n_m2_in_axes5_z -
-        v.axis_y_six_r_axes5_z*v.six_r_end_p1_in_axes5_z);
-    /* (six_r-qd_1) rate of joint 1 */
-    const real six_r_qd_1_t_6 = six_r_eta_1*m->six_r_size[i];
-    const real six_r_qd_1_t_7 = six_r_eta_2*m->six_r_size[i];
-    const real six_r_qd_1_t_8 = v.inv_six_r_w_1_t_79*(v.six_r_S_dot_in_axes5_x*v.six_r_qd_1_t
-        + v.six_r_S_dot_in_axes5_z*v.six_r_qd_1_t_3 + v.six_r_qd_1_t_4*six_r_qd_1_t_6 +
-        v.six_r_qd_1_t_5*six_r_qd_1_t_7 - v.six_r_S_dot_in_axes5_y*v.six_r_qd_1_t_2);
-    const real six_r_qd_1_t_9 =
-        v.inv_six_r_w_1_t_67*(v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_68 +
-        v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 + six_r_qd_1_t_6*v.six_r_w_1_t_71 +
-        six_r_qd_1_t_7*v.six_r_w_1_t_72 - v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_69 -
-        six_r_qd_1_t_8*v.six_r_w_1_t_73);
-    const real six_r_qd_1_t_10 =
-        v.inv_six_r_w_1_t_49*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 -
-        v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 - v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52
-        - six_r_qd_1_t_6*v.six_r_w_1_t_53 - six_r_qd_1_t_7*v.six_r_w_1_t_54 +
-        six_r_qd_1_t_8*v.six_r_w_1_t_61 + six_r_qd_1_t_9*v.six_r_w_1_t_55);
-    /* (six_r-qd_4) rate of joint 4 */
-    const real six_r_qd_4 = v.inv_six_r_w_1_t_28*(v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 +
-        six_r_qd_1_t_6*v.six_r_w_1_t_31 + six_r_qd_1_t_7*v.six_r_w_1_t_32 -
-        v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29 + six_r_qd_1_t_8*v.six_r_w_1_t_44 +
-        six_r_qd_1_t_9*v.six_r_w_1_t_39 - six_r_qd_1_t_10*v.six_r_w_1_t_33);
-    /* (six_r-qd_5) rate of joint 5 */
-    const real six_r_qd_5 = v.inv_six_r_w_1_t_12*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 +
-        six_r_qd_1_t_7*v.six_r_w_1_t_14 + six_r_qd_1_t_8*v.six_r_w_1_t_25 -
-        six_r_qd_1_t_9*v.six_r_w_1_t_22 + six_r_qd_1_t_10*v.six_r_w_1_t_18 -
-        six_r_qd_4*v.six_r_w_1_t_15);
-    /* (six_r-omega_1) angular velocity of link 1 */
-    const real six_r_omega_1_in_axes2_x = -v.six_r_c_2*six_r_qd_1_t_10;
-    const real six_r_omega_1_in_axes2_y = six_r_qd_1_t_10*v.six_r_s_2;
-    const real six_r_omega_1_t = v.six_r_e_1_in_axes5_x*six_r_qd_1_t_10;
-    const real six_r_omega_1_t_2 = v.six_r_e_1_in_axes5_y*six_r_qd_1_t_10;
-    const real six_r_omega_1_t_3 = v.six_r_e_1_in_axes5_z*six_r_qd_1_t_10;
-    /* (six_r-W_1) centripetal tensor of link 1 */
-    const real six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2;
-    const real six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3;
-    const real six_r_W_1_in_axes5_yz = six_r_omega_1_t_2*six_r_omega_1_t_3;
-    /* (six_r-omega_2) angular velocity of link 2 */
-    const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v.six_r_s_3 -
-        v.six_r_c_3*six_r_omega_1_in_axes2_y;
-    const real six_r_omega_2_in_axes3_y = v.six_r_c_3*six_r_omega_1_in_axes2_x +
-        six_r_omega_1_in_axes2_y*v.six_r_s_3;
-    const real six_r_omega_2_in_axes5_x = v.six_r_e_2_in_axes5_x*six_r_qd_1_t_9 -
-        six_r_omega_1_t;
-    const real six_r_omega_2_in_axes5_y = v.six_r_e_2_in_axes5_y*six_r_qd_1_t_9 -
-        six_r_omega_1_t_2;
-    const real six_r_omega_2_in_axes5_z = v.six_r_c_4*six_r_qd_1_t_9 - six_r_omega_1_t_3;
-    /* (six_r-W_2) centripetal tensor of link 2 */
-    const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_9;
-    const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
-    const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
-    const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
-    const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
-    /* (six_r-omega_3) angular velocity of link 3 */
-    const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_8 + six_r_qd_1_t_9;
-    const real six_r_omega_3_in_axes4_x = six_r_omega_3_in_axes3_z*v.six_r_s_4 -
-        v.six_r_c_4*six_r_omega_2_in_axes3_x;
-    const real six_r_omega_3_in_axes4_y = v.six_r_c_4*six_r_omega_3_in_axes3_z +
-        six_r_omega_2_in_axes3_x*v.six_r_s_4;
-    const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v.six_r_s_5;
-    const real six_r_omega_3_t_2 = v.six_r_c_5*six_r_omega_3_in_axes4_x;
-    const real six_r_omega_3_in_axes5_x = v.six_r_c_5*six_r_omega_2_in_axes3_y +
-        six_r_omega_3_t;
-    const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
-        six_r_omega_2_in_axes3_y*v.six_r_s_5;
-    /* (six_r-W_3) centripetal tensor of link 3 */
-    const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
-    const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
-    const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
-    const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
-    const real six_r_W_3_t_3 = six_r_W_3_t_2 + six_r_W_3_t;
-    const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
-    const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
-    /* (six_r-omega_4) angular velocity of link 4 */
-    const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
-    const real six_r_omega_4_in_axes5_x = v.six_r_c_5*six_r_omega_4_in_axes4_z +
-        six_r_omega_3_t;
-    const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
-        six_r_omega_4_in_axes4_z*v.six_r_s_5;
-    /* (six_r-W_4) centripetal tensor of link 4 */
-    const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
-    const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
-    const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
-    const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
-    /* (six_r-omega_5) angular velocity of link 5 */
-    const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y + six_r_qd_5;
-    /* (six_r-W_5) centripetal tensor of link 5 */
-    const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
-    const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
-    const real six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2;
-    const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
-    const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
-    /* (six_r-u_1) centripetal acceleration of the connection point */
-    const real six_r_u_1_in_axes5_x = v.axis_x_six_r_axes5_x*v.six_r_u_1_x +
-        v.axis_x_six_r_axes5_y*v.six_r_u_1_y + v.axis_x_six_r_axes5_z*v.six_r_u_1_z;
-    const real six_r_u_1_in_axes5_y = v.axis_y_six_r_axes5_x*v.six_r_u_1_x +
-        v.axis_y_six_r_axes5_y*v.six_r_u_1_y + v.axis_y_six_r_axes5_z*v.six_r_u_1_z;
-    const real six_r_u_1_in_axes5_z = v.axis_z_six_r_axes5_x*v.six_r_u_1_x +
-        v.axis_z_six_r_axes5_y*v.six_r_u_1_y + v.axis_z_six_r_axes5_z*v.six_r_u_1_z;
-    /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_9;
-    const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v.six_r_s_3 -
-        v.six_r_c_3*six_r_zeta_2_in_axes2_y;
-    const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v.six_r_c_3 +
-        v.six_r_s_3*six_r_zeta_2_in_axes2_y;
-    const real six_r_zeta_2_t = v.six_r_c_4*six_r_zeta_2_in_axes3_x;
-    const real six_r_zeta_2_in_axes5_z = v.six_r_s_4*six_r_zeta_2_in_axes3_x;
-    const real six_r_zeta_2_in_axes5_x = v.six_r_c_5*six_r_zeta_2_in_axes3_y -
-        v.six_r_s_5*six_r_zeta_2_t;
-    const real six_r_zeta_2_in_axes5_y = -v.six_r_s_5*six_r_zeta_2_in_axes3_y -
-        v.six_r_c_5*six_r_zeta_2_t;
-    /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-    const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_8;
-    const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_8;
-    /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x;
-    const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t;
-    const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v.six_r_c_4;
-    const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v.six_r_s_4;
-    /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-    const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
-    const real six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4;
-    /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
-    const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
-    const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t;
-    const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v.six_r_c_5;
-    const real six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*v.six_r_s_5;
-    const real six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*v.six_r_s_5;
-    const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v.six_r_c_5 -
-        six_r_beta_4_t_2;
-    /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
-    const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
-    const real six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5;
-    /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
-    const real six_r_beta_5_in_axes5_x = six_r_zeta_5_in_axes5_x + six_r_beta_4_in_axes5_x;
-    const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t;
-    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-    const real six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
-    const real six_r_bias_t_2 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
-    const real six_r_bias_t_6 = v.six_r_bias_t_4*v.six_r_c_4;
-    const real six_r_d_2_in_axes5_z = v.six_r_bias_t_4*v.six_r_s_4;
-    const real six_r_d_2_in_axes5_x = v.six_r_bias_t_5*v.six_r_c_5 -
-        six_r_bias_t_6*v.six_r_s_5;
-    const real six_r_d_2_in_axes5_y = -v.six_r_bias_t_5*v.six_r_s_5 -
-        six_r_bias_t_6*v.six_r_c_5;
-    const real six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t;
-    const real six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2;
-    const real six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3;
-    const real six_r_bias_t_12 = v.six_r_bias_t_10*v.six_r_c_4;
-    const real six_r_d_3_in_axes5_z = v.six_r_bias_t_10*v.six_r_s_4;
-    const real six_r_d_3_in_axes5_x = v.six_r_bias_t_11*v.six_r_c_5 -
-        six_r_bias_t_12*v.six_r_s_5;
-    const real six_r_d_3_in_axes5_y = -v.six_r_bias_t_11*v.six_r_s_5 -
-        six_r_bias_t_12*v.six_r_c_5;
-    const real six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
-    const real six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
-    const real six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
-    const real six_r_bias_t_16 = m->six_r_joint4_offset_x[i]*v.six_r_s_5;
-    const real six_r_bias_t_17 = m->six_r_joint5_offset_x[i]*v.six_r_s_5;
-    const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
-    const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y +
-        six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z - six_r_d_2_in_axes5_x*(six_r_bias_t_8 +
-        six_r_bias_t_9) - six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) +
-        six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-        six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
-        six_r_W_5_t_3*m->six_r_platform_joint_offset_x[i] -
-        six_r_bias_t_16*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
-        six_r_bias_t_17*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
-        v.six_r_d_4_in_axes5_x*(six_r_bias_t +
-        six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
-        v.six_r_d_5_in_axes5_x*(six_r_bias_t + six_r_W_5_t);
-    const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z - six_r_d_2_in_axes5_y*(six_r_bias_t_7 +
-        six_r_bias_t_9) - six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15) +
-        six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-        six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-        six_r_bias_t_16*(six_r_bias_t + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
-        six_r_bias_t_17*(six_r_bias_t + six_r_bias_t_2) +
-        six_r_bias_t_18*v.six_r_d_5_in_axes5_x +
-        six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
-        v.six_r_d_4_in_axes5_x*(six_r_beta_3_in_axes4_y + six_r_W_3_in_axes5_xy);
-    const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y - six_r_d_2_in_axes5_z*(six_r_bias_t_7 +
-        six_r_bias_t_8) - six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14) +
-        six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-        six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-        v.six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_c_5 +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) - six_r_bias_t_16*(six_r_beta_4_t +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v.six_r_s_5) +
-        v.six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-        six_r_beta_4_in_axes5_y) -
-        six_r_bias_t_17*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y +
-        six_r_beta_4_in_axes5_x) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
-        - six_r_beta_5_in_axes5_y);
-    /* (six_r-rel_o) remainder of: acceleration of the connection point left to the joint
-       accelerations */
-    const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
-    const real six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y;
-    const real six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z;
-    /* (six_r-nd_m1) rate of moment direction 1 */
-    const real six_r_nd_m1_in_axes5_x = -v.six_r_nd_m1_t -
-        v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
-    const real six_r_nd_m1_in_axes5_y = v.six_r_end_p1_in_axes5_z*v.six_r_omega_in_axes5_y -
-        v.six_r_n_m2_in_axes5_z*v.six_r_omega_in_axes5_z -
-        v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
-    /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real six_r_nu_1_t = v.six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
-    const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v.six_r_n_m2_in_axes5_z -
-        six_r_beta_5_in_axes5_y*v.six_r_n_m1_in_axes5_y;
-    const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - v.six_r_omega_in_axes5_x;
-    const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v.six_r_omega_in_axes5_y;
-    const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v.six_r_omega_in_axes5_z;
-    const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
-        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
-        six_r_nu_1_t_5*(v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x + six_r_nu_1_t);
-    const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
-    /* (six_r-nd_m2) rate of moment direction 2 */
-    const real six_r_nd_m2_in_axes5_y = v.six_r_n_m1_in_axes5_y*v.six_r_omega_in_axes5_y -
-        v.six_r_n_m2_in_axes5_z*v.six_r_omega_in_axes5_x -
-        v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
-    const real six_r_nd_m2_in_axes5_z = v.six_r_nd_m1_t -
-        v.six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
-    /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
-    const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v.six_r_end_p1_in_axes5_z -
-        six_r_beta_4_in_axes4_y*v.six_r_n_m2_in_axes5_z;
-    const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
-        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
-        six_r_nu_1_t_3*(v.six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z + six_r_nu_1_t);
-    const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
-    /* (six_r-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real six_r_qdd_1_o_t = six_r_nu_1*m->six_r_size[i];
-    const real six_r_qdd_1_o_t_2 = six_r_nu_2*m->six_r_size[i];
-    const real six_r_qdd_1_o_t_3 = v.inv_six_r_w_1_t_79*(v.six_r_qd_1_t_4*six_r_qdd_1_o_t +
-        v.six_r_qd_1_t_5*six_r_qdd_1_o_t_2 + v.six_r_qd_1_t*six_r_rel_o_in_axes5_x -
-        v.six_r_qd_1_t_2*six_r_rel_o_in_axes5_y + v.six_r_qd_1_t_3*six_r_rel_o_in_axes5_z);
-    const real six_r_qdd_1_o_t_4 = v.inv_six_r_w_1_t_67*(six_r_qdd_1_o_t*v.six_r_w_1_t_71 +
-        six_r_qdd_1_o_t_2*v.six_r_w_1_t_72 + six_r_rel_o_in_axes5_x*v.six_r_w_1_t_68 -
-        six_r_rel_o_in_axes5_y*v.six_r_w_1_t_69 + six_r_rel_o_in_axes5_z*v.six_r_w_1_t_70 -
-        six_r_qdd_1_o_t_3*v.six_r_w_1_t_73);
-    const real six_r_qdd_1_o_t_5 =
-        v.inv_six_r_w_1_t_49*(six_r_rel_o_in_axes5_y*v.six_r_w_1_t_51 -
-        six_r_qdd_1_o_t*v.six_r_w_1_t_53 - six_r_qdd_1_o_t_2*v.six_r_w_1_t_54 -
-        six_r_rel_o_in_axes5_x*v.six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*v.six_r_w_1_t_52 +
-        six_r_qdd_1_o_t_3*v.six_r_w_1_t_61 + six_r_qdd_1_o_t_4*v.six_r_w_1_t_55);
-    /* (six_r-qdd_4_o) remainder of: acceleration of joint 4 */
-    const real six_r_qdd_4_o = v.inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*v.six_r_w_1_t_31 +
-        six_r_qdd_1_o_t_2*v.six_r_w_1_t_32 - six_r_rel_o_in_axes5_y*v.six_r_w_1_t_29 +
-        six_r_rel_o_in_axes5_z*v.six_r_w_1_t_30 + six_r_qdd_1_o_t_3*v.six_r_w_1_t_44 +
-        six_r_qdd_1_o_t_4*v.six_r_w_1_t_39 - six_r_qdd_1_o_t_5*v.six_r_w_1_t_33);
-    /* (six_r-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real six_r_alpha_1_o_t = v.six_r_c_2*six_r_qdd_1_o_t_5;
-    const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v.six_r_s_2;
-    /* (six_r-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
-    const real six_r_alpha_2_o_in_axes2_y = six_r_zeta_2_in_axes2_y +
-        six_r_alpha_1_o_in_axes2_y;
-    /* (six_r-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real six_r_B_2_o_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_o_t_4;
-    const real six_r_B_2_o_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_o_t_4;
-    const real six_r_B_2_o_in_axes2_zx = -six_r_zeta_2_in_axes2_y -
-        six_r_alpha_2_o_in_axes2_y;
-    const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
-    /* (six_r-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
-        six_r_alpha_2_o_in_axes2_x*v.six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v.six_r_c_3;
-    const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 -
-        six_r_zeta_3_t + six_r_alpha_2_o_in_axes2_y*v.six_r_s_3;
-    const real six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4;
-    /* (six_r-B_3_o) remainder of the acceleration tensor of link 3 */
-    const real six_r_B_3_o_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_o_in_axes3_z;
-    const real six_r_B_3_o_in_axes3_xz = six_r_W_3_in_axes3_xz + six_r_alpha_3_o_in_axes3_y;
-    const real six_r_B_3_o_in_axes3_yx = six_r_W_3_in_axes3_xy + six_r_alpha_3_o_in_axes3_z;
-    const real six_r_B_3_o_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_o_in_axes3_x;
-    const real six_r_B_3_o_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_o_in_axes3_y;
-    const real six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x;
-    /* (six_r-alpha_4_o) remainder of: angular acceleration of link 4 */
-    const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
-        six_r_alpha_3_o_in_axes3_z*v.six_r_s_4 - six_r_alpha_3_o_in_axes3_x*v.six_r_c_4;
-    const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_z*v.six_r_c_4 -
-        six_r_zeta_4_t + six_r_alpha_3_o_in_axes3_x*v.six_r_s_4;
-    const real six_r_alpha_4_o_in_axes4_z = six_r_qdd_4_o + six_r_alpha_3_o_in_axes3_y;
-    /* (six_r-B_4_o) remainder of the acceleration tensor of link 4 */
-    const real six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z;
-    const real six_r_B_4_o_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_o_in_axes4_y;
-    const real six_r_B_4_o_in_axes4_yx = six_r_W_4_in_axes4_xy + six_r_alpha_4_o_in_axes4_z;
-    const real six_r_B_4_o_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_o_in_axes4_x;
-    const real six_r_B_4_o_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_o_in_axes4_y;
-    const real six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x;
-    /* (six_r-alpha_5_o) remainder of: angular acceleration of link 5 */
-    const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
-        six_r_alpha_4_o_in_axes4_x*v.six_r_s_5 + six_r_alpha_4_o_in_axes4_z*v.six_r_c_5;
-    const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v.six_r_c_5 -
-        six_r_zeta_5_t - six_r_alpha_4_o_in_axes4_z*v.six_r_s_5;
-    const real six_r_alpha_5_o_in_axes5_z =
-        v.inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*v.six_r_w_1_t_14 +
-        six_r_rel_o_in_axes5_y*v.six_r_w_1_t_13 + six_r_qdd_1_o_t_3*v.six_r_w_1_t_25 -
-        six_r_qdd_1_o_t_4*v.six_r_w_1_t_22 + six_r_qdd_1_o_t_5*v.six_r_w_1_t_18 -
-        six_r_qdd_4_o*v.six_r_w_1_t_15) + six_r_alpha_4_o_in_axes4_y;
-    /* (six_r-B_5_o) remainder of the acceleration tensor of link 5 */
-    const real six_r_B_5_o_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_o_in_axes5_z;
-    const real six_r_B_5_o_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_o_in_axes5_y;
-    const real six_r_B_5_o_in_axes5_yx = six_r_W_4_in_axes5_xy + six_r_alpha_5_o_in_axes5_z;
-    const real six_r_B_5_o_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_o_in_axes5_x;
-    const real six_r_B_5_o_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_o_in_axes5_y;
-    const real six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x;
-    /* (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
-    const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
-    const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_9*six_r_qd_1_t_9;
-    const real six_r_a_o_3_o_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_o_t_2 +
-        six_r_a_o_3_o_t);
-    const real six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*m->six_r_joint3_offset_x[i];
-    const real six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*m->six_r_joint3_offset_x[i];
-    const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_x*v.six_r_s_3 -
-        six_r_a_o_3_o_in_axes2_y*v.six_r_c_3;
-    const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v.six_r_c_3 +
-        six_r_a_o_3_o_in_axes2_y*v.six_r_s_3;
-    /* (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4 */
-    const real six_r_a_o_4_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*m->six_r_joint4_offset_x[i]
-        + six_r_a_o_3_o_in_axes3_x;
-    const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y -
-        six_r_W_3_t_3*m->six_r_joint4_offset_x[i];
-    const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
-        six_r_B_3_o_in_axes3_zy*m->six_r_joint4_offset_x[i];
-    /* (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - v.six_r_g_in_axes3_x;
-    const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - v.six_r_g_in_axes3_y;
-    const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v.six_r_g_in_axes1_y;
-    /* (six_r-f_3_o) remainder of: inertia force of link 3 less its weight */
-    const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
-    const real six_r_f_3_o_in_axes3_x = m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 +
-        six_r_f_3_o_t) + six_r_B_3_o_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
-        six_r_acc_3_o_in_axes3_x*m->six_r_link3_mass[i] +
-        six_r_B_3_o_in_axes3_xz*m->six_r_h_3_in_spec3_z[i];
-    const real six_r_f_3_o_in_axes3_y = six_r_acc_3_o_in_axes3_y*m->six_r_link3_mass[i] -
-        six_r_W_3_t_3*m->six_r_h_3_in_spec3_x[i] -
-        six_r_B_3_o_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] +
-        six_r_B_3_o_in_axes3_yz*m->six_r_h_3_in_spec3_z[i];
-    const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] -
-        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t + six_r_f_3_o_t) +
-        six_r_acc_3_o_in_axes3_z*m->six_r_link3_mass[i] -
-        six_r_B_3_o_in_axes3_zx*m->six_r_h_3_in_spec3_y[i];
-    /* (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-    const real six_r_acc_4_o_in_axes4_x = v.six_r_c_4*v.six_r_g_in_axes3_x -
-        v.six_r_g_in_axes1_y*v.six_r_s_4 - six_r_a_o_4_o_in_axes3_x*v.six_r_c_4 +
-        six_r_a_o_4_o_in_axes3_z*v.six_r_s_4;
-    const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v.six_r_s_4 -
-        v.six_r_c_4*v.six_r_g_in_axes1_y - v.six_r_g_in_axes3_x*v.six_r_s_4 +
-        six_r_a_o_4_o_in_axes3_z*v.six_r_c_4;
-    const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v.six_r_g_in_axes3_y;
-    /* (six_r-f_4_o) remainder of: inertia force of link 4 less its weight */
-    const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
-    const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
-    const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] -
-        m->six_r_h_4_in_spec4_y[i]*(six_r_bias_t + six_r_f_4_o_t_2) +
-        six_r_B_4_o_in_axes4_xz*m->six_r_h_4_in_spec4_x[i] +
-        six_r_acc_4_o_in_axes4_x*m->six_r_link4_mass[i];
-    const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] -
-        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_o_t + six_r_f_4_o_t_2) +
-        six_r_B_4_o_in_axes4_yz*m->six_r_h_4_in_spec4_x[i] +
-        six_r_acc_4_o_in_axes4_y*m->six_r_link4_mass[i];
-    const real six_r_f_4_o_in_axes4_z = six_r_acc_4_o_in_axes4_z*m->six_r_link4_mass[i] -
-        m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t + six_r_f_4_o_t) +
-        six_r_B_4_o_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
-        six_r_B_4_o_in_axes4_zy*m->six_r_h_4_in_spec4_z[i];
-    const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v.six_r_s_4 -
-        v.six_r_c_4*six_r_f_4_o_in_axes4_x;
-    const real six_r_f_4_o_in_axes3_z = v.six_r_c_4*six_r_f_4_o_in_axes4_y +
-        six_r_f_4_o_in_axes4_x*v.six_r_s_4;
-    /* (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity */
-    const real six_r_acc_5_o_in_axes5_x = six_r_u_1_in_axes5_x -
-        v.axis_x_six_r_axes5_x*m->gravity_x - v.axis_x_six_r_axes5_y*m->gravity_y -
-        v.axis_x_six_r_axes5_z*m->gravity_z;
-    const real six_r_acc_5_o_in_axes5_y = six_r_u_1_in_axes5_y -
-        v.axis_y_six_r_axes5_x*m->gravity_x - v.axis_y_six_r_axes5_y*m->gravity_y -
-        v.axis_y_six_r_axes5_z*m->gravity_z;
-    const real six_r_acc_5_o_in_axes5_z = six_r_u_1_in_axes5_z -
-        v.axis_z_six_r_axes5_x*m->gravity_x - v.axis_z_six_r_axes5_y*m->gravity_y -
-        v.axis_z_six_r_axes5_z*m->gravity_z;
-    /* (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their
-       reference points */
-    const real six_r_mu_5_o_in_axes5_x = six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
-        six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_z[i] +
-        m->six_r_J_5_in_spec5_yz[i]*(six_r_W_5_t - six_r_W_5_t_2) +
-        six_r_B_5_o_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
-        six_r_B_5_o_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] -
-        six_r_B_5_o_in_axes5_yz*m->six_r_Sigma_5_in_axes5_zz[i] -
-        six_r_B_5_o_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i];
-    const real six_r_mu_5_o_in_axes5_y = six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
-        six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_x[i] -
-        m->six_r_J_5_in_spec5_xz[i]*(six_r_bias_t_2 - six_r_W_5_t_2) -
-        six_r_B_5_o_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] +
-        six_r_B_5_o_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
-        six_r_B_5_o_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] -
-        six_r_B_5_o_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i];
-    const real six_r_mu_5_o_in_axes5_z = six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
-        six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_y[i] +
-        m->six_r_J_5_in_spec5_xy[i]*(six_r_bias_t_2 - six_r_W_5_t) +
-        six_r_B_5_o_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] -
-        six_r_B_5_o_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] +
-        six_r_B_5_o_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] -
-        six_r_B_5_o_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i];
-    /* (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
-       reference points */
-    const real six_r_mu_4_o_in_axes4_x = m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t -
-        six_r_f_4_o_t_2) + six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_z[i] +
-        six_r_B_4_o_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
-        six_r_B_4_o_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] -
-        six_r_B_4_o_in_axes4_yz*m->six_r_Sigma_4_in_axes4_zz[i] -
-        six_r_B_4_o_in_axes4_zx*m->six_r_J_4_in_spec4_yz[i] -
-        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_x[i];
-    const real six_r_mu_4_o_in_axes4_y =
-        six_r_B_4_o_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] -
-        m->six_r_J_4_in_spec4_xy[i]*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
-        six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_y[i] +
-        six_r_B_4_o_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] -
-        six_r_B_4_o_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
-        six_r_B_4_o_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] +
-        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_x[i];
-    const real six_r_mu_4_o_in_axes4_z = m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_o_t -
-        six_r_bias_t) + six_r_B_4_o_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
-        six_r_B_4_o_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] -
-        six_r_B_4_o_in_axes4_xy*m->six_r_Sigma_4_in_axes4_yy[i] -
-        six_r_B_4_o_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] +
-        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
-        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_z[i];
-    /* (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the
-       connection point left out */
-    const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
-        v.six_r_c_5*six_r_mu_5_o_in_axes5_y + six_r_mu_5_o_in_axes5_x*v.six_r_s_5;
-    const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
-    const real six_r_N_4_o_in_axes4_z = v.six_r_c_5*six_r_mu_5_o_in_axes5_x -
-        six_r_mu_5_o_in_axes5_y*v.six_r_s_5 + six_r_mu_4_o_in_axes4_z;
-    /* (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-       reference points */
-    const real six_r_mu_3_o_in_axes3_x = m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_o_t -
-        six_r_W_3_t_2) - six_r_B_3_o_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
-        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_z[i] +
-        six_r_B_3_o_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
-        six_r_B_3_o_in_axes3_zy*m->six_r_Sigma_3_in_axes3_yy[i] +
-        six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_x[i] -
-        six_r_B_3_o_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i];
-    const real six_r_mu_3_o_in_axes3_y = m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t -
-        six_r_W_3_t_2) - six_r_B_3_o_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] +
-        six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_z[i] +
-        six_r_B_3_o_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
-        six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_y[i] -
-        six_r_B_3_o_in_axes3_zx*m->six_r_Sigma_3_in_axes3_xx[i] -
-        six_r_B_3_o_in_axes3_zy*m->six_r_J_3_in_spec3_xy[i];
-    const real six_r_mu_3_o_in_axes3_z =
-        six_r_B_3_o_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] -
-        m->six_r_J_3_in_spec3_xy[i]*(six_r_W_3_t - six_r_f_3_o_t) -
-        six_r_B_3_o_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
-        six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_x[i] -
-        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_y[i] +
-        six_r_B_3_o_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
-        six_r_B_3_o_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i];
-    /* (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
-       connection point left out */
-    const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
-        six_r_f_4_o_in_axes3_z*m->six_r_joint4_offset_x[i] +
-        six_r_N_4_o_in_axes4_y*v.six_r_s_4 - six_r_N_4_o_in_axes4_x*v.six_r_c_4;
-    const real six_r_N_3_o_in_axes3_y = six_r_mu_3_o_in_axes3_y + six_r_N_4_o_in_axes4_z;
-    const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z -
-        six_r_f_4_o_in_axes3_x*m->six_r_joint4_offset_x[i] +
-        six_r_N_4_o_in_axes4_y*v.six_r_c_4 + six_r_N_4_o_in_axes4_x*v.six_r_s_4;
-    /* (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
-       */
-    const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
-    const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z;
-    const real six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z;
-    /* (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
-    const real six_r_mu_2_o_in_axes2_x = v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i] -
-        v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i] +
-        m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
-        six_r_B_2_o_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] -
-        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_t +
-        six_r_B_2_o_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] -
-        six_r_B_2_o_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i];
-    const real six_r_mu_2_o_in_axes2_y = v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_x[i] -
-        v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_z[i] -
-        m->six_r_J_2_in_spec2_xz[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
-        six_r_B_2_o_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] +
-        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_in_axes2_y +
-        six_r_B_2_o_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] -
-        six_r_B_2_o_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i];
-    const real six_r_mu_2_o_in_axes2_z = v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_y[i] -
-        v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_x[i] +
-        m->six_r_J_2_in_spec2_xy[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t) +
-        six_r_B_2_o_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] -
-        six_r_B_2_o_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] +
-        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_o_in_axes2_y -
-        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_o_t;
-    /* (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-       connection point left out */
-    const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
-        six_r_N_3_o_in_axes3_x*v.six_r_s_3 + six_r_N_3_o_in_axes3_y*v.six_r_c_3;
-    const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y -
-        six_r_T_3_o_in_axes3_z*m->six_r_joint3_offset_x[i] +
-        six_r_N_3_o_in_axes3_y*v.six_r_s_3 - six_r_N_3_o_in_axes3_x*v.six_r_c_3;
-    const real six_r_N_2_o_in_axes2_z = six_r_mu_2_o_in_axes2_z -
-        m->six_r_joint3_offset_x[i]*(six_r_T_3_o_in_axes3_x*v.six_r_c_3 -
-        six_r_T_3_o_in_axes3_y*v.six_r_s_3) + six_r_N_3_o_in_axes3_z;
-    /* (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real six_r_mu_1_o_in_axes1_z = v.six_r_g_in_axes1_x*m->six_r_h_1_in_spec1_z[i] -
-        v.six_r_g_in_axes1_y*m->six_r_h_1_in_spec1_y[i] -
-        m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_o_t_5;
-    /* (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
-        six_r_N_2_o_in_axes2_x*v.six_r_c_2 - six_r_N_2_o_in_axes2_y*v.six_r_s_2;
-    /* (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia
-       and weight along all degrees of freedom */
-    const real six_r_G_m1_o_t = v.inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z;
-    const real six_r_G_m1_o_t_2 = v.inv_six_r_w_1_t_28*(six_r_G_m1_o_t*v.six_r_w_1_t_15 -
-        six_r_N_4_o_in_axes4_z);
-    const real six_r_G_m1_o_t_3 = v.inv_six_r_w_1_t_49*(six_r_G_m1_o_t*v.six_r_w_1_t_18 +
-        six_r_G_m1_o_t_2*v.six_r_w_1_t_33 - six_r_N_1_o_in_axes1_z);
-    const real six_r_G_m1_o_t_4 = v.inv_six_r_w_1_t_67*(six_r_G_m1_o_t*v.six_r_w_1_t_22 +
-        six_r_G_m1_o_t_2*v.six_r_w_1_t_39 - six_r_N_2_o_in_axes2_z -
-        six_r_G_m1_o_t_3*v.six_r_w_1_t_55);
-    const real six_r_G_m1_o_t_5 = v.inv_six_r_w_1_t_79*(six_r_G_m1_o_t*v.six_r_w_1_t_25 +
-        six_r_N_3_o_in_axes3_z - six_r_G_m1_o_t_2*v.six_r_w_1_t_44 +
-        six_r_G_m1_o_t_3*v.six_r_w_1_t_61 + six_r_G_m1_o_t_4*v.six_r_w_1_t_73);
-    const real six_r_G_m1_o_t_6 = m->six_r_size[i]*(six_r_G_m1_o_t_2*v.six_r_w_1_t_31 +
-        six_r_G_m1_o_t_3*v.six_r_w_1_t_53 + six_r_G_m1_o_t_4*v.six_r_w_1_t_71 -
-        six_r_G_m1_o_t_5*v.six_r_qd_1_t_4);
-    /* (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia
-       and weight along all degrees of freedom */
-    const real six_r_G_m2_o_t = m->six_r_size[i]*(six_r_G_m1_o_t_2*v.six_r_w_1_t_32 -
-        six_r_G_m1_o_t*v.six_r_w_1_t_14 + six_r_G_m1_o_t_3*v.six_r_w_1_t_54 +
-        six_r_G_m1_o_t_4*v.six_r_w_1_t_72 - six_r_G_m1_o_t_5*v.six_r_qd_1_t_5);
-    /* (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*v.six_r_n_m2_in_axes5_z;
-    const real six_r_G_m_o_in_axes5_y = six_r_G_m2_o_t*v.six_r_end_p1_in_axes5_z -
-        six_r_G_m1_o_t_6*v.six_r_n_m1_in_axes5_y;
-    /* (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at
-       the connection point */
-    const real six_r_c_o_in_axes5_x = six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_o_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
-        six_r_B_5_o_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] + six_r_G_m1_o_t_3*v.six_r_w_1_t_50
-        + six_r_G_m1_o_t_4*v.six_r_w_1_t_68 - six_r_G_m1_o_t_5*v.six_r_qd_1_t;
-    const real six_r_c_o_in_axes5_y = m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 +
-        six_r_bias_t_2) - six_r_B_5_o_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_o_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_o_t*v.six_r_w_1_t_13 -
-        six_r_G_m1_o_t_2*v.six_r_w_1_t_29 - six_r_G_m1_o_t_3*v.six_r_w_1_t_51 -
-        six_r_G_m1_o_t_4*v.six_r_w_1_t_69 + six_r_G_m1_o_t_5*v.six_r_qd_1_t_2;
-    const real six_r_c_o_in_axes5_z = m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t +
-        six_r_bias_t_2) - six_r_B_5_o_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_o_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] + six_r_G_m1_o_t_2*v.six_r_w_1_t_30
-        + six_r_G_m1_o_t_3*v.six_r_w_1_t_52 + six_r_G_m1_o_t_4*v.six_r_w_1_t_70 -
-        six_r_G_m1_o_t_5*v.six_r_qd_1_t_3;
-    /* (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation */
-    const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*v.six_r_n_m2_in_axes5_z;
-    /* (six_r-U) velocity and gravity terms of the leg force */
-    const real six_r_U_x = -v.axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x -
-        v.axis_y_six_r_axes5_x*six_r_c_o_in_axes5_y -
-        v.axis_z_six_r_axes5_x*six_r_c_o_in_axes5_z;
-    const real six_r_U_y = -v.axis_x_six_r_axes5_y*six_r_c_o_in_axes5_x -
-        v.axis_y_six_r_axes5_y*six_r_c_o_in_axes5_y -
-        v.axis_z_six_r_axes5_y*six_r_c_o_in_axes5_z;
-    const real six_r_U_z = -v.axis_x_six_r_axes5_z*six_r_c_o_in_axes5_x -
-        v.axis_y_six_r_axes5_z*six_r_c_o_in_axes5_y -
-        v.axis_z_six_r_axes5_z*six_r_c_o_in_axes5_z;
-    /* (Z_a) rotational part of Z */
-    const real six_r_Z_a_t = v.axis_x_six_r_axes5_x*six_r_G_m_o_in_axes5_x +
-        v.axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + six_r_U_z*v.six_r_q_y -
-        v.axis_z_six_r_axes5_x*six_r_c_m_o_in_axes5_z - six_r_U_y*v.six_r_q_z;
-    const real six_r_Z_a_t_2 = v.axis_x_six_r_axes5_y*six_r_G_m_o_in_axes5_x +
-        v.axis_y_six_r_axes5_y*six_r_G_m_o_in_axes5_y + six_r_U_x*v.six_r_q_z -
-        v.axis_z_six_r_axes5_y*six_r_c_m_o_in_axes5_z - six_r_U_z*v.six_r_q_x;
-    const real six_r_Z_a_t_3 = v.axis_x_six_r_axes5_z*six_r_G_m_o_in_axes5_x +
-        v.axis_y_six_r_axes5_z*six_r_G_m_o_in_axes5_y + six_r_U_y*v.six_r_q_x -
-        v.axis_z_six_r_axes5_z*six_r_c_m_o_in_axes5_z - six_r_U_x*v.six_r_q_y;
     /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, six_r_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, six_r_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, six_r_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[3*count + k], add, six_r_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, six_r_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, six_r_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
+    gather(&terms[0*count + k], add, v.six_r_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.six_r_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.six_r_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v.six_r_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v.six_r_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v.six_r_Z_a_t_3);  /* Z_a_z_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
-INLINE void Z_place_six_r(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_six_r(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
-    const real Z_p_x = s[9*w + k];
+    const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[10*w + k];
+    const real Z_p_y = s[19*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[11*w + k];
+    const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[12*w + k];
+    const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[13*w + k];
+    const real Z_q_y = s[22*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[14*w + k];
+    const real Z_q_z = s[23*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
@@ -7308,9 +5297,9 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 }
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *joints, real *Z,
-    verdict *t)
+    status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_six_r[6*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[LEGS(LEGS_OF_six_r)] = {0};
     values v;
     Z_before(m, 1, 0, X, &v, s, t);
@@ -7328,9 +5317,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *j
 }
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const real *joints, real
-    *restrict Z, verdict *restrict t)
+    *restrict Z, status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_six_r[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -7353,7 +5342,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const r
 
 /* ---- H ---- */
 INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -7375,7 +5364,6 @@ INLINE void H_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     stage_six_r_X(m, w, i, j, s, &v);
     stage_six_r_q(m, w, i, j, joints, &v);
     stage_six_r_X_q(m, i, &v);
-    stage_six_r_H_condition(m, i, &v);
     /* (six_r-w_2) force part of reciprocal wrench 2 */
     o[0*count + k] = v.six_r_w_2_x;
     o[1*count + k] = v.six_r_w_2_y;
@@ -7386,15 +5374,15 @@ INLINE void H_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     o[5*count + k] = v.six_r_H_a_2_z;
     o[7*count + k] = (v.six_r_w_2_x + (v.six_r_w_2_y + v.six_r_w_2_z)) + (v.six_r_H_a_2_x +
         (v.six_r_H_a_2_y + v.six_r_H_a_2_z));
-    o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
+    o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
 INLINE void H_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *H, verdict *t)
+    real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -7406,9 +5394,9 @@ INLINE void H_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count,
     t->total[k] += o[7*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, const real *joints, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, const real *joints, real *H, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_six_r[8*LEGS(LEGS_OF_six_r)] = {0};
     values v;
     H_before(m, 1, 0, X, &v, s, t);
@@ -7421,9 +5409,9 @@ APART void H_run(const prepared *m, const real *X, const real *joints, real *H, 
 }
 
 INLINE void H_run_lanes(const prepared *m, const real *X, const real *joints, real *restrict H,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_six_r[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -7440,10 +5428,12 @@ INLINE void H_run_lanes(const prepared *m, const real *X, const real *joints, re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -7453,20 +5443,21 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
-    /* (W_p) centripetal tensor of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real W_p_xy = omega_x*omega_y;
-    const real omega_z = V[5*w + k];
-    const real W_p_xz = omega_x*omega_z;
-    const real W_p_yz = omega_y*omega_z;
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -7478,28 +5469,31 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
     const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
-    const real f_p_t = omega_x*omega_x;
-    const real f_p_t_2 = omega_y*omega_y;
-    const real f_p_t_3 = omega_z*omega_z;
+    const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
+        v->W_p_t_4*v->h_star_x;
+    const real f_p_y = a_t_y*m->m_star + v->B_p_yx*v->h_star_x + v->B_p_yz*v->h_star_z -
+        v->W_p_t_5*v->h_star_y;
+    const real f_p_z = a_t_z*m->m_star + v->B_p_zx*v->h_star_x + v->B_p_zy*v->h_star_y -
+        v->W_p_t_6*v->h_star_z;
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    const real mu_p_t = m->J_star_in_platform_xx*omega_in_platform_x +
+        m->J_star_in_platform_xy*omega_in_platform_y +
+        m->J_star_in_platform_xz*omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*omega_in_platform_x +
+        m->J_star_in_platform_yy*omega_in_platform_y +
+        m->J_star_in_platform_yz*omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*omega_in_platform_x +
+        m->J_star_in_platform_yz*omega_in_platform_y +
+        m->J_star_in_platform_zz*omega_in_platform_z;
+    const real alpha_x = A[3*w + k];
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
-        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
-    const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
-        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
-        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
-    /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
@@ -7507,29 +5501,29 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
         a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
+        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
         a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
+        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
         a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
     const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
         v->R_xz*mu_p_in_platform_z;
     const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
         v->R_yz*mu_p_in_platform_z;
     const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
         v->R_zz*mu_p_in_platform_z;
-    s[9*w + k] = f_p_x;
-    s[10*w + k] = f_p_y;
-    s[11*w + k] = f_p_z;
-    s[12*w + k] = mu_p_x;
-    s[13*w + k] = mu_p_y;
-    s[14*w + k] = mu_p_z;
+    s[18*w + k] = f_p_x;
+    s[19*w + k] = f_p_y;
+    s[20*w + k] = f_p_z;
+    s[21*w + k] = mu_p_x;
+    s[22*w + k] = mu_p_y;
+    s[23*w + k] = mu_p_z;
 }
 
 INLINE void required_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -7539,14 +5533,14 @@ INLINE void required_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     values_six_r v;
     stage_six_r_X(m, w, i, j, s, &v);
     stage_six_r_q(m, w, i, j, joints, &v);
-    stage_six_r_A_X(w, j, A, &v);
     stage_six_r_A_q(w, j, A, &v);
     stage_six_r_V_X(w, j, V, &v);
     stage_six_r_V_q(w, j, V, &v);
     stage_six_r_X_q(m, i, &v);
-    stage_six_r_A_V_X(w, j, V, &v);
+    stage_six_r_A_V_X(w, j, s, A, &v);
     stage_six_r_A_X_q(w, j, A, &v);
-    stage_six_r_V_X_q(&v);
+    stage_six_r_V_X_q(m, i, &v);
+    stage_six_r_A_V_X_q(m, i, &v);
     stage_six_r_legs_required(m, i, &v);
     /* (six_r-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -7560,25 +5554,13 @@ INLINE void required_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         v.axis_y_six_r_axes5_z*v.six_r_c_in_axes5_y +
         v.axis_z_six_r_axes5_z*v.six_r_c_in_axes5_z;
     /* (R_a) moment that actuators and external wrench must give */
-    const real six_r_R_a_t = v.axis_x_six_r_axes5_x*v.six_r_G_m_in_axes5_x +
-        v.axis_y_six_r_axes5_x*v.six_r_G_m_in_axes5_y + six_r_c_y*v.six_r_q_z -
-        v.axis_z_six_r_axes5_x*v.six_r_c_m_in_axes5_z - six_r_c_z*v.six_r_q_y;
-    const real six_r_R_a_t_2 = v.axis_x_six_r_axes5_y*v.six_r_G_m_in_axes5_x +
-        v.axis_y_six_r_axes5_y*v.six_r_G_m_in_axes5_y + six_r_c_z*v.six_r_q_x -
-        v.axis_z_six_r_axes5_y*v.six_r_c_m_in_axes5_z - six_r_c_x*v.six_r_q_z;
-    const real six_r_R_a_t_3 = v.axis_x_six_r_axes5_z*v.six_r_G_m_in_axes5_x +
-        v.axis_y_six_r_axes5_z*v.six_r_G_m_in_axes5_y + six_r_c_x*v.six_r_q_y -
-        v.axis_z_six_r_axes5_z*v.six_r_c_m_in_axes5_z - six_r_c_y*v.six_r_q_x;
+    const real six_r_R_a_t = six_r_c_y*v.six_r_q_z - six_r_c_z*v.six_r_q_y - v.six_r_c_m_x;
+    const real six_r_R_a_t_2 = six_r_c_z*v.six_r_q_x - six_r_c_x*v.six_r_q_z - v.six_r_c_m_y;
+    const real six_r_R_a_t_3 = six_r_c_x*v.six_r_q_y - six_r_c_y*v.six_r_q_x - v.six_r_c_m_z;
     /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-    const real six_r_H_a_2_x = v.axis_y_six_r_axes5_x*v.six_r_o_2_in_axes5_y +
-        v.axis_z_six_r_axes5_x*v.six_r_o_2_in_axes5_z + v.six_r_q_y*v.six_r_w_2_z -
-        v.axis_x_six_r_axes5_x*v.six_r_o_2_t - v.six_r_q_z*v.six_r_w_2_y;
-    const real six_r_H_a_2_y = v.axis_y_six_r_axes5_y*v.six_r_o_2_in_axes5_y +
-        v.axis_z_six_r_axes5_y*v.six_r_o_2_in_axes5_z + v.six_r_q_z*v.six_r_w_2_x -
-        v.axis_x_six_r_axes5_y*v.six_r_o_2_t - v.six_r_q_x*v.six_r_w_2_z;
-    const real six_r_H_a_2_z = v.axis_y_six_r_axes5_z*v.six_r_o_2_in_axes5_y +
-        v.axis_z_six_r_axes5_z*v.six_r_o_2_in_axes5_z + v.six_r_q_x*v.six_r_w_2_y -
-        v.axis_x_six_r_axes5_z*v.six_r_o_2_t - v.six_r_q_y*v.six_r_w_2_x;
+    const real six_r_H_a_2_x_2 = v.six_r_H_a_2_t + v.six_r_o_2_x_2;
+    const real six_r_H_a_2_y_2 = v.six_r_H_a_2_t_2 + v.six_r_o_2_y_2;
+    const real six_r_H_a_2_z_2 = v.six_r_H_a_2_t_3 + v.six_r_o_2_z_2;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, six_r_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, six_r_c_y);  /* R_t_y_of_legs */
@@ -7592,18 +5574,18 @@ INLINE void required_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     o[1*count + k] = v.six_r_w_2_y;
     o[2*count + k] = v.six_r_w_2_z;
     /* (six_r-H_a_2) */
-    o[3*count + k] = six_r_H_a_2_x;
-    o[4*count + k] = six_r_H_a_2_y;
-    o[5*count + k] = six_r_H_a_2_z;
-    o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
+    o[3*count + k] = six_r_H_a_2_x_2;
+    o[4*count + k] = six_r_H_a_2_y_2;
+    o[5*count + k] = six_r_H_a_2_z_2;
+    o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
 INLINE void required_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -7618,23 +5600,23 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 {
     /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
-    const real f_p_x = s[9*w + k];
+    const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
-    const real f_p_y = s[10*w + k];
+    const real f_p_y = s[19*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
     const real R_t_z_of_legs = sums[2*w + k];
-    const real f_p_z = s[11*w + k];
+    const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
-    const real mu_p_x = s[12*w + k];
+    const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
-    const real mu_p_y = s[13*w + k];
+    const real mu_p_y = s[22*w + k];
     const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
-    const real mu_p_z = s[14*w + k];
+    const real mu_p_z = s[23*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
@@ -7647,12 +5629,12 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, const
-    real *joints, real *required, real *H, verdict *t)
+    real *joints, real *required, real *H, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_six_r[6*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
     values v;
-    required_before(m, 1, 0, X, &v, s, t);
+    required_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         required_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, V, A, joints, terms_six_r, o_six_r);
     }
@@ -7667,13 +5649,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    const real *joints, real *restrict required, real *restrict H, verdict *restrict t)
+    const real *joints, real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_six_r[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s, t);
+        required_before(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -7714,7 +5696,7 @@ INLINE void inverse_kinematics_legs_six_r(size_t w, size_t i, size_t j, size_t k
 }
 
 INLINE void inverse_kinematics_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[5*i*w + k] = o[0*count + at];
     q[(1 + 5*i)*w + k] = o[1*count + at];
@@ -7724,7 +5706,7 @@ INLINE void inverse_kinematics_place_six_r(size_t w, size_t i, size_t k, size_t 
     t->total[k] += o[5*count + at];
 }
 
-APART void inverse_kinematics_run(const real *joints, real *q, verdict *t)
+APART void inverse_kinematics_run(const real *joints, real *q, status_flags *t)
 {
     real o_six_r[6*LEGS(LEGS_OF_six_r)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
@@ -7735,8 +5717,8 @@ APART void inverse_kinematics_run(const real *joints, real *q, verdict *t)
     }
 }
 
-INLINE void inverse_kinematics_run_lanes(const real *joints, real *restrict q, verdict *restrict
-    t)
+INLINE void inverse_kinematics_run_lanes(const real *joints, real *restrict q, status_flags
+    *restrict t)
 {
     real o_six_r[6*LANES];
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
@@ -7751,7 +5733,7 @@ INLINE void inverse_kinematics_run_lanes(const real *joints, real *restrict q, v
 
 /* ---- joint_rates ---- */
 INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, verdict *t)
+    real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -7772,78 +5754,31 @@ INLINE void joint_rates_legs_six_r(const prepared *m, size_t w, size_t i, size_t
     values_six_r v;
     stage_six_r_X(m, w, i, j, s, &v);
     stage_six_r_q(m, w, i, j, joints, &v);
+    stage_six_r_V_X(w, j, V, &v);
     stage_six_r_V_q(w, j, V, &v);
     stage_six_r_X_q(m, i, &v);
-    /* (six_r-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real six_r_S_dot_x = t_dot_x + omega_y*v.six_r_q_z - omega_z*v.six_r_q_y;
-    const real omega_x = V[3*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real six_r_S_dot_y = t_dot_y + omega_z*v.six_r_q_x - omega_x*v.six_r_q_z;
-    const real t_dot_z = V[2*w + j];
-    const real six_r_S_dot_z = t_dot_z + omega_x*v.six_r_q_y - omega_y*v.six_r_q_x;
-    const real six_r_S_dot_in_axes5_x = v.axis_x_six_r_axes5_x*six_r_S_dot_x +
-        v.axis_x_six_r_axes5_y*six_r_S_dot_y + v.axis_x_six_r_axes5_z*six_r_S_dot_z;
-    const real six_r_S_dot_in_axes5_y = v.axis_y_six_r_axes5_x*six_r_S_dot_x +
-        v.axis_y_six_r_axes5_y*six_r_S_dot_y + v.axis_y_six_r_axes5_z*six_r_S_dot_z;
-    const real six_r_S_dot_in_axes5_z = v.axis_z_six_r_axes5_x*six_r_S_dot_x +
-        v.axis_z_six_r_axes5_y*six_r_S_dot_y + v.axis_z_six_r_axes5_z*six_r_S_dot_z;
+    stage_six_r_V_X_q(m, i, &v);
     /* (six_r-qd_1) rate of joint 1 */
-    const real six_r_qd_1_t =
-        m->six_r_size[i]*(v.six_r_n_m1_in_axes5_y*v.six_r_omega_in_axes5_y -
-        v.six_r_n_m2_in_axes5_z*(v.axis_x_six_r_axes5_x*omega_x +
-        v.axis_x_six_r_axes5_y*omega_y + v.axis_x_six_r_axes5_z*omega_z));
-    const real six_r_qd_1_t_2 =
-        m->six_r_size[i]*(v.six_r_end_p1_in_axes5_z*v.six_r_omega_in_axes5_y -
-        v.six_r_n_m2_in_axes5_z*(v.axis_z_six_r_axes5_x*omega_x +
-        v.axis_z_six_r_axes5_y*omega_y + v.axis_z_six_r_axes5_z*omega_z));
-    const real six_r_qd_1_t_3 =
-        v.inv_six_r_w_1_t_79*(v.inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_y*v.six_r_w_1_t_75 +
-        v.inv_six_r_w_1_t_79*six_r_qd_1_t_2*v.six_r_w_1_t_78 -
-        v.inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_x*v.six_r_w_1_t_74 -
-        v.inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_z*v.six_r_w_1_t_76 -
-        v.inv_six_r_w_1_t_79*six_r_qd_1_t*v.six_r_w_1_t_77);
-    const real six_r_qd_1_t_4 = -v.inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_y*v.six_r_w_1_t_69
-        + six_r_qd_1_t_2*v.six_r_w_1_t_72 - six_r_S_dot_in_axes5_x*v.six_r_w_1_t_68 -
-        six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 - six_r_qd_1_t*v.six_r_w_1_t_71 -
-        six_r_qd_1_t_3*v.six_r_w_1_t_73);
-    const real six_r_qd_1 = v.inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 +
-        six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52 + six_r_qd_1_t*v.six_r_w_1_t_53 -
-        six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 - six_r_qd_1_t_2*v.six_r_w_1_t_54 +
-        six_r_qd_1_t_3*v.six_r_w_1_t_61 - six_r_qd_1_t_4*v.six_r_w_1_t_55);
-    /* (six_r-qd_4) rate of joint 4 */
-    const real six_r_qd_4_t = v.inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29 +
-        six_r_qd_1_t_2*v.six_r_w_1_t_32 - six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 -
-        six_r_qd_1_t*v.six_r_w_1_t_31 + six_r_qd_1_t_3*v.six_r_w_1_t_44 -
-        six_r_qd_1_t_4*v.six_r_w_1_t_39 - six_r_qd_1*v.six_r_w_1_t_33);
-    /* (six_r-qd_5) rate of joint 5 */
-    const real six_r_qd_5_t = v.inv_six_r_w_1_t_12*(six_r_qd_1_t_2*v.six_r_w_1_t_14 -
-        six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 + six_r_qd_1_t_3*v.six_r_w_1_t_25 +
-        six_r_qd_1_t_4*v.six_r_w_1_t_22 + six_r_qd_1*v.six_r_w_1_t_18 -
-        six_r_qd_4_t*v.six_r_w_1_t_15);
-    /* (six_r-qd_1) */
-    o[0*count + k] = six_r_qd_1;
+    o[0*count + k] = v.six_r_qd_1;
     /* (six_r-qd_2) rate of joint 2 */
-    o[1*count + k] = six_r_qd_1_t_4;
+    o[1*count + k] = v.six_r_qd_1_t_18;
     /* (six_r-qd_3) rate of joint 3 */
-    o[2*count + k] = -six_r_qd_1_t_3;
-    /* (six_r-qd_4) */
-    o[3*count + k] = -six_r_qd_4_t;
-    /* (six_r-qd_5) */
-    o[4*count + k] = -six_r_qd_5_t;
-    o[6*count + k] = (six_r_qd_1 + six_r_qd_1_t_4) + (six_r_qd_1_t_3 + (six_r_qd_4_t +
-        six_r_qd_5_t));
-    o[5*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
+    o[2*count + k] = -v.six_r_qd_1_t_17;
+    /* (six_r-qd_4) rate of joint 4 */
+    o[3*count + k] = -v.six_r_qd_4_t_3;
+    /* (six_r-qd_5) rate of joint 5 */
+    o[4*count + k] = -v.six_r_qd_5_t_2;
+    o[6*count + k] = (v.six_r_qd_1 + v.six_r_qd_1_t_18) + (v.six_r_qd_1_t_17 +
+        (v.six_r_qd_4_t_3 + v.six_r_qd_5_t_2));
+    o[5*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
 INLINE void joint_rates_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[5*i*w + k] = o[0*count + at];
     qd[(1 + 5*i)*w + k] = o[1*count + at];
@@ -7855,9 +5790,9 @@ INLINE void joint_rates_place_six_r(size_t w, size_t i, size_t k, size_t at, siz
 }
 
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, const real *joints,
-    real *qd, verdict *t)
+    real *qd, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
     values v;
     joint_rates_before(m, 1, 0, X, &v, s, t);
@@ -7870,9 +5805,9 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, cons
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, const real
-    *joints, real *restrict qd, verdict *restrict t)
+    *joints, real *restrict qd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_six_r[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -7889,10 +5824,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
+    real *V, const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -7902,6 +5839,15 @@ INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, co
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -7911,259 +5857,35 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i
     values_six_r v;
     stage_six_r_X(m, w, i, j, s, &v);
     stage_six_r_q(m, w, i, j, joints, &v);
-    stage_six_r_A_X(w, j, A, &v);
     stage_six_r_A_q(w, j, A, &v);
     stage_six_r_V_X(w, j, V, &v);
     stage_six_r_V_q(w, j, V, &v);
     stage_six_r_X_q(m, i, &v);
-    stage_six_r_A_V_X(w, j, V, &v);
+    stage_six_r_A_V_X(w, j, s, A, &v);
     stage_six_r_A_X_q(w, j, A, &v);
-    stage_six_r_V_X_q(&v);
-    stage_six_r_Z_joint_accelerations(&v);
-    /* (six_r-qd_1) rate of joint 1 */
-    const real six_r_qd_1_t_6 = v.six_r_eta_1*m->six_r_size[i];
-    const real six_r_qd_1_t_7 = v.six_r_eta_2_t*m->six_r_size[i];
-    const real six_r_qd_1_t_8 =
-        v.inv_six_r_w_1_t_79*(v.six_r_S_dot_in_axes5_y*v.six_r_qd_1_t_2 +
-        v.six_r_qd_1_t_5*six_r_qd_1_t_7 - v.six_r_S_dot_in_axes5_x*v.six_r_qd_1_t -
-        v.six_r_S_dot_in_axes5_z*v.six_r_qd_1_t_3 - v.six_r_qd_1_t_4*six_r_qd_1_t_6);
-    const real six_r_qd_1_t_9 =
-        -v.inv_six_r_w_1_t_67*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_69 +
-        six_r_qd_1_t_7*v.six_r_w_1_t_72 - v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_68 -
-        v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 - six_r_qd_1_t_6*v.six_r_w_1_t_71 -
-        six_r_qd_1_t_8*v.six_r_w_1_t_73);
-    const real six_r_qd_1 = v.inv_six_r_w_1_t_49*(v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 +
-        v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52 + six_r_qd_1_t_6*v.six_r_w_1_t_53 -
-        v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 - six_r_qd_1_t_7*v.six_r_w_1_t_54 +
-        six_r_qd_1_t_8*v.six_r_w_1_t_61 - six_r_qd_1_t_9*v.six_r_w_1_t_55);
-    /* (six_r-qd_4) rate of joint 4 */
-    const real six_r_qd_4_t = v.inv_six_r_w_1_t_28*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29
-        + six_r_qd_1_t_7*v.six_r_w_1_t_32 - v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 -
-        six_r_qd_1_t_6*v.six_r_w_1_t_31 + six_r_qd_1_t_8*v.six_r_w_1_t_44 -
-        six_r_qd_1_t_9*v.six_r_w_1_t_39 - six_r_qd_1*v.six_r_w_1_t_33);
-    /* (six_r-qd_5) rate of joint 5 */
-    const real six_r_qd_5_t = v.inv_six_r_w_1_t_12*(six_r_qd_1_t_7*v.six_r_w_1_t_14 -
-        v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 + six_r_qd_1_t_8*v.six_r_w_1_t_25 +
-        six_r_qd_1_t_9*v.six_r_w_1_t_22 + six_r_qd_1*v.six_r_w_1_t_18 -
-        six_r_qd_4_t*v.six_r_w_1_t_15);
-    /* (six_r-omega_1) angular velocity of link 1 */
-    const real six_r_omega_1_in_axes2_x = v.six_r_c_2*six_r_qd_1;
-    const real six_r_omega_1_in_axes2_y = -six_r_qd_1*v.six_r_s_2;
-    const real six_r_omega_1_in_axes5_x = v.six_r_e_1_in_axes5_x*six_r_qd_1;
-    const real six_r_omega_1_in_axes5_y = v.six_r_e_1_in_axes5_y*six_r_qd_1;
-    const real six_r_omega_1_in_axes5_z = v.six_r_e_1_in_axes5_z*six_r_qd_1;
-    /* (six_r-W_1) centripetal tensor of link 1 */
-    const real six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y;
-    const real six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z;
-    const real six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z;
-    /* (six_r-omega_2) angular velocity of link 2 */
-    const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v.six_r_s_3 -
-        v.six_r_c_3*six_r_omega_1_in_axes2_y;
-    const real six_r_omega_2_in_axes3_y = v.six_r_c_3*six_r_omega_1_in_axes2_x +
-        six_r_omega_1_in_axes2_y*v.six_r_s_3;
-    const real six_r_omega_2_in_axes5_x = v.six_r_e_2_in_axes5_x*six_r_qd_1_t_9 +
-        six_r_omega_1_in_axes5_x;
-    const real six_r_omega_2_in_axes5_y = v.six_r_e_2_in_axes5_y*six_r_qd_1_t_9 +
-        six_r_omega_1_in_axes5_y;
-    const real six_r_omega_2_in_axes5_z = v.six_r_c_4*six_r_qd_1_t_9 +
-        six_r_omega_1_in_axes5_z;
-    /* (six_r-W_2) centripetal tensor of link 2 */
-    const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_9;
-    const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
-    const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
-    const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
-    /* (six_r-omega_3) angular velocity of link 3 */
-    const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_9 - six_r_qd_1_t_8;
-    const real six_r_omega_3_in_axes4_x = six_r_omega_3_in_axes3_z*v.six_r_s_4 -
-        v.six_r_c_4*six_r_omega_2_in_axes3_x;
-    const real six_r_omega_3_in_axes4_y = v.six_r_c_4*six_r_omega_3_in_axes3_z +
-        six_r_omega_2_in_axes3_x*v.six_r_s_4;
-    const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v.six_r_s_5;
-    const real six_r_omega_3_t_2 = v.six_r_c_5*six_r_omega_3_in_axes4_x;
-    const real six_r_omega_3_in_axes5_x = v.six_r_c_5*six_r_omega_2_in_axes3_y +
-        six_r_omega_3_t;
-    const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
-        six_r_omega_2_in_axes3_y*v.six_r_s_5;
-    /* (six_r-W_3) centripetal tensor of link 3 */
-    const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
-    /* (six_r-omega_4) angular velocity of link 4 */
-    const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t;
-    const real six_r_omega_4_in_axes5_x = v.six_r_c_5*six_r_omega_4_in_axes4_z +
-        six_r_omega_3_t;
-    const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
-        six_r_omega_4_in_axes4_z*v.six_r_s_5;
-    /* (six_r-W_4) centripetal tensor of link 4 */
-    const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
-    /* (six_r-omega_5) angular velocity of link 5 */
-    const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y - six_r_qd_5_t;
-    /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_9;
-    const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v.six_r_s_3 -
-        v.six_r_c_3*six_r_zeta_2_in_axes2_y;
-    const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v.six_r_c_3 +
-        v.six_r_s_3*six_r_zeta_2_in_axes2_y;
-    const real six_r_zeta_2_t = v.six_r_c_4*six_r_zeta_2_in_axes3_x;
-    const real six_r_zeta_2_in_axes5_z = v.six_r_s_4*six_r_zeta_2_in_axes3_x;
-    const real six_r_zeta_2_in_axes5_x = v.six_r_c_5*six_r_zeta_2_in_axes3_y -
-        v.six_r_s_5*six_r_zeta_2_t;
-    const real six_r_zeta_2_in_axes5_y = -v.six_r_s_5*six_r_zeta_2_in_axes3_y -
-        v.six_r_c_5*six_r_zeta_2_t;
-    /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x -
-        six_r_omega_2_in_axes3_y*six_r_qd_1_t_8;
-    const real six_r_beta_3_in_axes3_y = six_r_omega_2_in_axes3_x*six_r_qd_1_t_8 +
-        six_r_zeta_2_in_axes3_y;
-    const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v.six_r_c_4;
-    const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v.six_r_s_4;
-    /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
-    const real six_r_beta_4_in_axes4_x = -six_r_omega_3_in_axes4_y*six_r_qd_4_t -
-        six_r_beta_3_t;
-    const real six_r_beta_4_in_axes4_y = six_r_omega_3_in_axes4_x*six_r_qd_4_t +
-        six_r_beta_3_in_axes4_y;
-    const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v.six_r_c_5;
-    const real six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*v.six_r_s_5;
-    const real six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*v.six_r_s_5;
-    const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v.six_r_c_5 -
-        six_r_beta_4_t_2;
-    /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
-    const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x -
-        six_r_omega_4_in_axes5_y*six_r_qd_5_t;
-    const real six_r_beta_5_in_axes5_y = six_r_omega_4_in_axes5_x*six_r_qd_5_t +
-        six_r_beta_4_in_axes5_y;
-    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-    const real six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
-    const real six_r_bias_t_11 = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
-    const real six_r_bias_t_12 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x;
-    const real six_r_bias_t_13 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y;
-    const real six_r_bias_t_14 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z;
-    const real six_r_bias_t_15 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
-    const real six_r_bias_t_16 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
-    const real six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
-    const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
-    const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*v.six_r_d_2_in_axes5_y +
-        six_r_W_1_in_axes5_xz*v.six_r_d_2_in_axes5_z - v.six_r_d_2_in_axes5_x*(six_r_bias_t_13
-        + six_r_bias_t_14) - v.six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) +
-        v.six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-        v.six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
-        v.six_r_bias_t_8*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
-        v.six_r_bias_t_9*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
-        v.six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
-        six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
-        v.six_r_d_5_in_axes5_x*(six_r_bias_t_10 + six_r_bias_t_11) -
-        m->six_r_platform_joint_offset_x[i]*(six_r_bias_t_11 +
-        six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z);
-    const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*v.six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*v.six_r_d_2_in_axes5_z - v.six_r_d_2_in_axes5_y*(six_r_bias_t_12
-        + six_r_bias_t_14) - v.six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17) +
-        v.six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-        v.six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-        six_r_bias_t_18*v.six_r_d_5_in_axes5_x +
-        six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
-        v.six_r_bias_t_8*(six_r_bias_t_10 + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x)
-        + v.six_r_bias_t_9*(six_r_bias_t_10 +
-        six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x) +
-        v.six_r_d_4_in_axes5_x*(six_r_beta_3_in_axes4_y + six_r_W_3_in_axes5_xy);
-    const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*v.six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*v.six_r_d_2_in_axes5_y - v.six_r_d_2_in_axes5_z*(six_r_bias_t_12
-        + six_r_bias_t_13) - v.six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16) +
-        v.six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-        v.six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-        v.six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_c_5 +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) - v.six_r_bias_t_8*(six_r_beta_4_t
-        + six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v.six_r_s_5) +
-        v.six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-        six_r_beta_4_in_axes5_y) -
-        v.six_r_bias_t_9*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y +
-        six_r_beta_4_in_axes5_x) +
-        m->six_r_platform_joint_offset_x[i]*(six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z
-        - six_r_beta_5_in_axes5_y);
-    /* (six_r-rel) acceleration of the connection point left to the joint accelerations */
-    const real six_r_rel_in_axes5_x = v.axis_x_six_r_axes5_x*v.six_r_S_ddot_x +
-        v.axis_x_six_r_axes5_y*v.six_r_S_ddot_y + v.axis_x_six_r_axes5_z*v.six_r_S_ddot_z -
-        six_r_bias_in_axes5_x;
-    const real six_r_rel_in_axes5_y = v.axis_y_six_r_axes5_x*v.six_r_S_ddot_x +
-        v.axis_y_six_r_axes5_y*v.six_r_S_ddot_y + v.axis_y_six_r_axes5_z*v.six_r_S_ddot_z -
-        six_r_bias_in_axes5_y;
-    const real six_r_rel_in_axes5_z = v.axis_z_six_r_axes5_x*v.six_r_S_ddot_x +
-        v.axis_z_six_r_axes5_y*v.six_r_S_ddot_y + v.axis_z_six_r_axes5_z*v.six_r_S_ddot_z -
-        six_r_bias_in_axes5_z;
-    /* (six_r-nd_m1) rate of moment direction 1 */
-    const real six_r_nd_m1_in_axes5_x = -v.six_r_nd_m1_t -
-        v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
-    const real six_r_nd_m1_in_axes5_y = v.six_r_eta_2_t -
-        v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
-    /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real six_r_nu_1_t = v.six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
-    const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v.six_r_n_m2_in_axes5_z -
-        six_r_beta_5_in_axes5_y*v.six_r_n_m1_in_axes5_y;
-    const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - v.six_r_omega_in_axes5_x;
-    const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v.six_r_omega_in_axes5_y;
-    const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v.six_r_omega_in_axes5_z;
-    const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
-        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
-        six_r_nu_1_t_5*(v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x + six_r_nu_1_t);
-    const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
-    /* (six_r-nd_m2) rate of moment direction 2 */
-    const real six_r_nd_m2_in_axes5_y = v.six_r_eta_1 -
-        v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
-    const real six_r_nd_m2_in_axes5_z = v.six_r_nd_m1_t -
-        v.six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
-    /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
-    const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v.six_r_end_p1_in_axes5_z -
-        six_r_beta_4_in_axes4_y*v.six_r_n_m2_in_axes5_z;
-    const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
-        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
-        six_r_nu_1_t_3*(v.six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z + six_r_nu_1_t);
-    const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
-    /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real six_r_etad_1 = six_r_nu_1 - v.six_r_etad_1_t;
-    /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
-    const real six_r_etad_2 = six_r_nu_2 - v.six_r_etad_2_t;
+    stage_six_r_V_X_q(m, i, &v);
+    stage_six_r_A_V_X_q(m, i, &v);
     /* (six_r-qdd_1) acceleration of joint 1 */
-    const real six_r_qdd_1_t = six_r_etad_1*m->six_r_size[i];
-    const real six_r_qdd_1_t_2 = six_r_etad_2*m->six_r_size[i];
-    const real six_r_qdd_1_t_3 = v.inv_six_r_w_1_t_79*(v.six_r_qd_1_t_4*six_r_qdd_1_t +
-        v.six_r_qd_1_t_5*six_r_qdd_1_t_2 + v.six_r_qd_1_t*six_r_rel_in_axes5_x -
-        v.six_r_qd_1_t_2*six_r_rel_in_axes5_y + v.six_r_qd_1_t_3*six_r_rel_in_axes5_z);
-    const real six_r_qdd_1_t_4 = v.inv_six_r_w_1_t_67*(six_r_qdd_1_t*v.six_r_w_1_t_71 +
-        six_r_qdd_1_t_2*v.six_r_w_1_t_72 + six_r_rel_in_axes5_x*v.six_r_w_1_t_68 -
-        six_r_rel_in_axes5_y*v.six_r_w_1_t_69 + six_r_rel_in_axes5_z*v.six_r_w_1_t_70 -
-        six_r_qdd_1_t_3*v.six_r_w_1_t_73);
-    const real six_r_qdd_1_t_5 = v.inv_six_r_w_1_t_49*(six_r_rel_in_axes5_y*v.six_r_w_1_t_51 -
-        six_r_qdd_1_t*v.six_r_w_1_t_53 - six_r_qdd_1_t_2*v.six_r_w_1_t_54 -
-        six_r_rel_in_axes5_x*v.six_r_w_1_t_50 - six_r_rel_in_axes5_z*v.six_r_w_1_t_52 +
-        six_r_qdd_1_t_3*v.six_r_w_1_t_61 + six_r_qdd_1_t_4*v.six_r_w_1_t_55);
-    /* (six_r-qdd_4) acceleration of joint 4 */
-    const real six_r_qdd_4 = v.inv_six_r_w_1_t_28*(six_r_qdd_1_t*v.six_r_w_1_t_31 +
-        six_r_qdd_1_t_2*v.six_r_w_1_t_32 - six_r_rel_in_axes5_y*v.six_r_w_1_t_29 +
-        six_r_rel_in_axes5_z*v.six_r_w_1_t_30 + six_r_qdd_1_t_3*v.six_r_w_1_t_44 +
-        six_r_qdd_1_t_4*v.six_r_w_1_t_39 - six_r_qdd_1_t_5*v.six_r_w_1_t_33);
-    /* (six_r-qdd_5) acceleration of joint 5 */
-    const real six_r_qdd_5 = v.inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*v.six_r_w_1_t_14 +
-        six_r_rel_in_axes5_y*v.six_r_w_1_t_13 + six_r_qdd_1_t_3*v.six_r_w_1_t_25 -
-        six_r_qdd_1_t_4*v.six_r_w_1_t_22 + six_r_qdd_1_t_5*v.six_r_w_1_t_18 -
-        six_r_qdd_4*v.six_r_w_1_t_15);
-    /* (six_r-qdd_1) */
-    o[0*count + k] = -six_r_qdd_1_t_5;
+    o[0*count + k] = -v.six_r_qdd_1_t_5;
     /* (six_r-qdd_2) acceleration of joint 2 */
-    o[1*count + k] = six_r_qdd_1_t_4;
+    o[1*count + k] = v.six_r_qdd_1_t_4;
     /* (six_r-qdd_3) acceleration of joint 3 */
-    o[2*count + k] = six_r_qdd_1_t_3;
-    /* (six_r-qdd_4) */
-    o[3*count + k] = six_r_qdd_4;
-    /* (six_r-qdd_5) */
-    o[4*count + k] = six_r_qdd_5;
-    o[6*count + k] = (six_r_qdd_1_t_5 + six_r_qdd_1_t_4) + (six_r_qdd_1_t_3 + (six_r_qdd_4 +
-        six_r_qdd_5));
-    o[5*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
+    o[2*count + k] = v.six_r_qdd_1_t_3;
+    /* (six_r-qdd_4) acceleration of joint 4 */
+    o[3*count + k] = v.six_r_qdd_4;
+    /* (six_r-qdd_5) acceleration of joint 5 */
+    o[4*count + k] = v.six_r_qdd_5;
+    o[6*count + k] = (v.six_r_qdd_1_t_5 + v.six_r_qdd_1_t_4) + (v.six_r_qdd_1_t_3 +
+        (v.six_r_qdd_4 + v.six_r_qdd_5));
+    o[5*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
 INLINE void joint_accelerations_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[5*i*w + k] = o[0*count + at];
     qdd[(1 + 5*i)*w + k] = o[1*count + at];
@@ -8175,12 +5897,12 @@ INLINE void joint_accelerations_place_six_r(size_t w, size_t i, size_t k, size_t
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    const real *joints, real *qdd, verdict *t)
+    const real *joints, real *qdd, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s, t);
+    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         joint_accelerations_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, V, A, joints, o_six_r);
     }
@@ -8190,13 +5912,13 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, const real *joints, real *restrict qdd, verdict *restrict t)
+    real *A, const real *joints, real *restrict qdd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_six_r[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s, t);
+        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -8209,10 +5931,12 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
+    real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -8222,6 +5946,15 @@ INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, va
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -8231,32 +5964,15 @@ INLINE void legs_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, siz
     values_six_r v;
     stage_six_r_X(m, w, i, j, s, &v);
     stage_six_r_q(m, w, i, j, joints, &v);
-    stage_six_r_A_X(w, j, A, &v);
     stage_six_r_A_q(w, j, A, &v);
     stage_six_r_V_X(w, j, V, &v);
     stage_six_r_V_q(w, j, V, &v);
     stage_six_r_X_q(m, i, &v);
-    stage_six_r_A_V_X(w, j, V, &v);
+    stage_six_r_A_V_X(w, j, s, A, &v);
     stage_six_r_A_X_q(w, j, A, &v);
-    stage_six_r_V_X_q(&v);
+    stage_six_r_V_X_q(m, i, &v);
+    stage_six_r_A_V_X_q(m, i, &v);
     stage_six_r_legs_required(m, i, &v);
-    /* (six_r-o_2) moment part of reciprocal wrench 2 */
-    const real six_r_o_2_x = v.axis_y_six_r_axes5_x*v.six_r_o_2_in_axes5_y +
-        v.axis_z_six_r_axes5_x*v.six_r_o_2_in_axes5_z - v.axis_x_six_r_axes5_x*v.six_r_o_2_t;
-    const real six_r_o_2_y = v.axis_y_six_r_axes5_y*v.six_r_o_2_in_axes5_y +
-        v.axis_z_six_r_axes5_y*v.six_r_o_2_in_axes5_z - v.axis_x_six_r_axes5_y*v.six_r_o_2_t;
-    const real six_r_o_2_z = v.axis_y_six_r_axes5_z*v.six_r_o_2_in_axes5_y +
-        v.axis_z_six_r_axes5_z*v.six_r_o_2_in_axes5_z - v.axis_x_six_r_axes5_z*v.six_r_o_2_t;
-    /* (six_r-c_m) moment of the leg on the platform without actuation */
-    const real six_r_c_m_x = v.axis_z_six_r_axes5_x*v.six_r_c_m_in_axes5_z -
-        v.axis_x_six_r_axes5_x*v.six_r_G_m_in_axes5_x -
-        v.axis_y_six_r_axes5_x*v.six_r_G_m_in_axes5_y;
-    const real six_r_c_m_y = v.axis_z_six_r_axes5_y*v.six_r_c_m_in_axes5_z -
-        v.axis_x_six_r_axes5_y*v.six_r_G_m_in_axes5_x -
-        v.axis_y_six_r_axes5_y*v.six_r_G_m_in_axes5_y;
-    const real six_r_c_m_z = v.axis_z_six_r_axes5_z*v.six_r_c_m_in_axes5_z -
-        v.axis_x_six_r_axes5_z*v.six_r_G_m_in_axes5_x -
-        v.axis_y_six_r_axes5_z*v.six_r_G_m_in_axes5_y;
     /* (six_r-c_true) leg force on the platform without actuation, the last link's mass included */
     const real six_r_c_true_in_axes5_x = v.six_r_c_in_axes5_x -
         v.six_r_acc_5_in_axes5_x*m->six_r_link5_mass[i];
@@ -8277,27 +5993,27 @@ INLINE void legs_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, siz
     o[0*count + k] = six_r_c_true_x;
     o[1*count + k] = six_r_c_true_y;
     o[2*count + k] = six_r_c_true_z;
-    /* (six_r-c_m) */
-    o[3*count + k] = six_r_c_m_x;
-    o[4*count + k] = six_r_c_m_y;
-    o[5*count + k] = six_r_c_m_z;
+    /* (six_r-c_m) moment of the leg on the platform without actuation */
+    o[3*count + k] = v.six_r_c_m_x;
+    o[4*count + k] = v.six_r_c_m_y;
+    o[5*count + k] = v.six_r_c_m_z;
     /* (six_r-w_2) force part of reciprocal wrench 2 */
     o[6*count + k] = v.six_r_w_2_x;
     o[7*count + k] = v.six_r_w_2_y;
     o[8*count + k] = v.six_r_w_2_z;
-    /* (six_r-o_2) */
-    o[9*count + k] = six_r_o_2_x;
-    o[10*count + k] = six_r_o_2_y;
-    o[11*count + k] = six_r_o_2_z;
-    o[12*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
+    /* (six_r-o_2) moment part of reciprocal wrench 2 */
+    o[9*count + k] = v.six_r_o_2_x_2;
+    o[10*count + k] = v.six_r_o_2_y_2;
+    o[11*count + k] = v.six_r_o_2_z_2;
+    o[12*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
 INLINE void legs_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[6*i*w + k] = o[0*count + at];
     leg_force[(6*i + 1)*w + k] = o[1*count + at];
@@ -8315,12 +6031,12 @@ INLINE void legs_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t cou
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, const real
-    *joints, real *leg_force, real *actuator, verdict *t)
+    *joints, real *leg_force, real *actuator, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_six_r[13*LEGS(LEGS_OF_six_r)] = {0};
     values v;
-    legs_before(m, 1, 0, X, &v, s, t);
+    legs_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         legs_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, V, A, joints, o_six_r);
     }
@@ -8331,7 +6047,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 
 /* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
@@ -8344,12 +6060,9 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
-        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
-        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
-        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
-        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
-        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
+        m->gravity_y*(m->m_star*t_y + v->h_star_y) + m->gravity_z*(m->m_star*t_z +
+        v->h_star_z);
     s[0*w + k] = potential_t;
 }
 
@@ -8359,56 +6072,48 @@ INLINE void potential_legs_six_r(const prepared *m, size_t w, size_t i, size_t j
     values_six_r v;
     stage_six_r_q(m, w, i, j, joints, &v);
     /* (potential) */
-    const real six_r_potential_t_4 = v.six_r_c_5*m->six_r_h_5_in_spec5_y[i] +
-        m->six_r_h_5_in_spec5_x[i]*v.six_r_s_5;
-    const real six_r_potential_t_5 = m->six_r_joint2_offset_x[i]*v.six_r_s_2;
-    const real six_r_potential_t_6 = v.six_r_c_1*m->six_r_potential_t[i] +
+    const real six_r_potential_t_4 = v.six_r_c_1*m->six_r_potential_t[i] +
         m->six_r_potential_t_2[i]*v.six_r_s_1;
     const real six_r_b_in_spec2_z = v.six_r_c_1*m->six_r_potential_t_2[i] -
         m->six_r_potential_t[i]*v.six_r_s_1;
     const real six_r_b_in_spec2_x = v.six_r_c_2*m->six_r_potential_t_3[i] +
-        six_r_potential_t_6*v.six_r_s_2;
-    const real six_r_b_in_spec2_y = v.six_r_c_2*six_r_potential_t_6 -
+        six_r_potential_t_4*v.six_r_s_2;
+    const real six_r_b_in_spec2_y = v.six_r_c_2*six_r_potential_t_4 -
         m->six_r_potential_t_3[i]*v.six_r_s_2;
-    const real six_r_potential_t_7 = six_r_b_in_spec2_y - six_r_potential_t_5;
-    const real six_r_potential_t_8 = v.six_r_c_5*m->six_r_h_5_in_spec5_x[i] -
-        m->six_r_h_5_in_spec5_y[i]*v.six_r_s_5;
-    const real six_r_potential_t_9 = v.six_r_e_2_in_axes5_z*six_r_potential_t_4 -
+    const real six_r_potential_t_5 = six_r_b_in_spec2_y - v.six_r_bias_t_3;
+    const real six_r_potential_t_6 = v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_x[i] -
+        v.six_r_J_5_t*m->six_r_h_5_in_spec5_y[i];
+    const real six_r_potential_t_7 = v.six_r_d_Gamma_4_t*v.six_r_e_2_in_axes5_z -
         v.six_r_h_4_t*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_potential_t_10 = m->six_r_h_2_in_spec2_x[i] +
+    const real six_r_potential_t_8 = m->six_r_h_2_in_spec2_x[i] +
         v.six_r_c_2*m->six_r_h_1_in_spec1_x[i] + v.six_r_c_3*m->six_r_h_3_in_spec3_x[i] +
         v.six_r_c_3*m->six_r_h_4_in_spec4_x[i] + m->six_r_h_1_in_spec1_y[i]*v.six_r_s_2 -
-        m->six_r_h_3_in_spec3_y[i]*v.six_r_s_3 + v.six_r_c_3*six_r_potential_t_8 -
+        m->six_r_h_3_in_spec3_y[i]*v.six_r_s_3 + v.six_r_c_3*six_r_potential_t_6 -
         v.six_r_h_4_in_spec3_y*v.six_r_s_3 + six_r_b_in_spec2_x*m->six_r_link1_mass[i] -
-        six_r_potential_t_9*v.six_r_s_3 + m->six_r_link2_mass[i]*(v.six_r_d_2_in_spec2_x +
+        six_r_potential_t_7*v.six_r_s_3 + m->six_r_link2_mass[i]*(v.six_r_d_2_in_spec2_x +
         six_r_b_in_spec2_x) + m->six_r_link3_mass[i]*(m->six_r_joint3_offset_x[i] +
         v.six_r_d_2_in_spec2_x + six_r_b_in_spec2_x) +
         m->six_r_link4_mass[i]*(m->six_r_joint3_offset_x[i] +
         v.six_r_c_3*m->six_r_joint4_offset_x[i] + v.six_r_d_2_in_spec2_x +
         six_r_b_in_spec2_x);
-    const real six_r_potential_t_11 = m->six_r_h_2_in_spec2_y[i] +
+    const real six_r_potential_t_9 = m->six_r_h_2_in_spec2_y[i] +
         v.six_r_c_2*m->six_r_h_1_in_spec1_y[i] + v.six_r_c_3*m->six_r_h_3_in_spec3_y[i] +
         m->six_r_h_3_in_spec3_x[i]*v.six_r_s_3 + m->six_r_h_4_in_spec4_x[i]*v.six_r_s_3 -
         m->six_r_h_1_in_spec1_x[i]*v.six_r_s_2 + v.six_r_c_3*v.six_r_h_4_in_spec3_y +
-        six_r_potential_t_8*v.six_r_s_3 + six_r_b_in_spec2_y*m->six_r_link1_mass[i] +
-        v.six_r_c_3*six_r_potential_t_9 + m->six_r_link2_mass[i]*six_r_potential_t_7 +
-        m->six_r_link3_mass[i]*six_r_potential_t_7 +
-        m->six_r_link4_mass[i]*(m->six_r_joint4_offset_x[i]*v.six_r_s_3 - six_r_potential_t_5
-        + six_r_b_in_spec2_y);
-    const real six_r_potential_t_12 = m->six_r_h_1_in_spec1_z[i] + m->six_r_h_2_in_spec2_z[i]
-        + m->six_r_h_3_in_spec3_z[i] + v.six_r_e_2_in_axes5_z*m->six_r_h_4_in_spec4_z[i] +
-        v.six_r_e_2_in_axes5_z*m->six_r_h_5_in_spec5_z[i] +
-        m->six_r_h_4_in_spec4_y[i]*v.six_r_h_4_t + six_r_b_in_spec2_z*m->six_r_link1_mass[i] +
+        six_r_potential_t_6*v.six_r_s_3 + six_r_b_in_spec2_y*m->six_r_link1_mass[i] +
+        v.six_r_c_3*six_r_potential_t_7 + m->six_r_link2_mass[i]*six_r_potential_t_5 +
+        m->six_r_link3_mass[i]*six_r_potential_t_5 +
+        m->six_r_link4_mass[i]*(m->six_r_joint4_offset_x[i]*v.six_r_s_3 - v.six_r_bias_t_3 +
+        six_r_b_in_spec2_y);
+    const real six_r_potential_t_10 = m->six_r_h_1_in_spec1_z[i] + m->six_r_h_2_in_spec2_z[i]
+        + m->six_r_h_3_in_spec3_z[i] + v.six_r_e_2_in_axes5_z*m->six_r_h_5_in_spec5_z[i] +
+        v.six_r_h_4_in_spec2_z + six_r_b_in_spec2_z*m->six_r_link1_mass[i] +
         six_r_b_in_spec2_z*m->six_r_link2_mass[i] + six_r_b_in_spec2_z*m->six_r_link3_mass[i]
-        + six_r_b_in_spec2_z*m->six_r_link4_mass[i] + v.six_r_h_4_t*six_r_potential_t_4;
-    const real six_r_potential_t_13 = six_r_potential_t_12*(m->six_r_acc_3_t_2[i]*v.six_r_c_1
-        - m->six_r_acc_3_t[i]*v.six_r_s_1) +
-        six_r_potential_t_10*(v.six_r_c_2*m->six_r_g_in_axes1_z[i] +
-        v.six_r_g_in_axes1_x*v.six_r_s_2) +
-        six_r_potential_t_11*(v.six_r_c_2*v.six_r_g_in_axes1_x -
-        m->six_r_g_in_axes1_z[i]*v.six_r_s_2);
+        + six_r_b_in_spec2_z*m->six_r_link4_mass[i] + v.six_r_d_Gamma_4_t*v.six_r_h_4_t;
+    const real six_r_potential_t_11 = v.six_r_g_in_axes1_y*six_r_potential_t_10 +
+        v.six_r_g_in_axes2_x*six_r_potential_t_8 + v.six_r_g_in_axes2_y*six_r_potential_t_9;
     /* (potential) */
-    gather(&terms[0*count + k], add, six_r_potential_t_13);  /* potential_of_legs */
+    gather(&terms[0*count + k], add, six_r_potential_t_11);  /* potential_of_legs */
 }
 
 INLINE void potential_place_six_r()
@@ -8426,7 +6131,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 }
 
 INLINE void potential_run(const prepared *m, const real *X, const real *joints, real *potential,
-    verdict *t)
+    status_flags *t)
 {
     real s[1] = {0}, sums[1] = {0};
     real terms_six_r[LEGS(LEGS_OF_six_r)] = {0};
@@ -8444,7 +6149,7 @@ INLINE void potential_run(const prepared *m, const real *X, const real *joints, 
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -8469,13 +6174,12 @@ INLINE void condition_legs_six_r(const prepared *m, size_t w, size_t i, size_t j
     stage_six_r_X(m, w, i, j, s, &v);
     stage_six_r_q(m, w, i, j, joints, &v);
     stage_six_r_X_q(m, i, &v);
-    stage_six_r_H_condition(m, i, &v);
     /* (six_r-w_1) force part of reciprocal wrench 1 */
-    const real six_r_pivot_size = magnitude(v.six_r_w_1_t_12);
-    const real six_r_pivot_size_2 = magnitude(v.six_r_w_1_t_28);
-    const real six_r_pivot_size_3 = magnitude(v.six_r_w_1_t_49);
-    const real six_r_pivot_size_4 = magnitude(v.six_r_w_1_t_67);
-    const real six_r_pivot_size_5 = magnitude(v.six_r_w_1_t_79);
+    const real six_r_pivot_size = magnitude(v.six_r_w_1_t_8);
+    const real six_r_pivot_size_2 = magnitude(v.six_r_w_1_t_24);
+    const real six_r_pivot_size_3 = magnitude(v.six_r_w_1_t_45);
+    const real six_r_pivot_size_4 = magnitude(v.six_r_w_1_t_63);
+    const real six_r_pivot_size_5 = magnitude(v.six_r_w_1_t_75);
     const real six_r_least_pivots =
         lesser(lesser(lesser(lesser(m->inv_six_r_size[i]*six_r_pivot_size,
         m->inv_six_r_size[i]*six_r_pivot_size_2), m->inv_six_r_size[i]*six_r_pivot_size_3),
@@ -8500,15 +6204,15 @@ INLINE void condition_legs_six_r(const prepared *m, size_t w, size_t i, size_t j
     o[6*count + k] = six_r_least_pivots;
     o[8*count + k] = (v.six_r_w_2_x + (v.six_r_w_2_y + v.six_r_w_2_z)) + ((v.six_r_H_a_2_x +
         v.six_r_H_a_2_y) + (v.six_r_H_a_2_z + six_r_least_pivots));
-    o[7*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
+    o[7*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
 INLINE void condition_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *H, real *pivots, verdict *t)
+    real *o, real *H, real *pivots, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -8522,7 +6226,7 @@ INLINE void condition_place_six_r(size_t w, size_t i, size_t k, size_t at, size_
 }
 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
-    *lengths, verdict *t)
+    *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_six_r = sums[0*w + k];
@@ -8533,9 +6237,9 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 }
 
 APART void condition_run(const prepared *m, const real *X, const real *joints, real *H, real
-    *lengths, real *pivots, real *reach, verdict *t)
+    *lengths, real *pivots, real *reach, status_flags *t)
 {
-    real s[9] = {0}, sums[1] = {0};
+    real s[18] = {0}, sums[1] = {0};
     real terms_six_r[LEGS(LEGS_OF_six_r)] = {0}, o_six_r[9*LEGS(LEGS_OF_six_r)] = {0};
     clear(reach, NL);
     values v;
@@ -8557,199 +6261,182 @@ APART void condition_run(const prepared *m, const real *X, const real *joints, r
 int hexapod_6x6r_M(const prepared *m, const real *X, const real *q0, real *M_out)
 {
     real joints[NJ] = {0}, M[NV*NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     M_run(m, X, joints, M, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M, why.overflow);
     }
     copy(NV*NV, M, M_out);
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, const real *q0, real *M_out, int *code)
 {
     real X_in[NQ*LANES], joints[NJ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     close_loops(m, LANES, X, q0, joints, &why);
     M_run_lanes(m, X, joints, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int hexapod_6x6r_Z(const prepared *m, const real *X, const real *q0, const real *V, real *Z_out)
 {
     real joints[NJ] = {0}, Z[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     Z_run(m, X, V, joints, Z, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z, why.overflow);
     }
     copy(NV, Z, Z_out);
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *q0, const real *V, real *Z_out,
     int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], joints[NJ*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     close_loops(m, LANES, X, q0, joints, &why);
     Z_run_lanes(m, X, V, joints, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int hexapod_6x6r_H(const prepared *m, const real *X, const real *q0, real *H_out)
 {
     real joints[NJ] = {0}, H[NV*NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     H_run(m, X, joints, H, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H, why.overflow);
     }
     copy(NV*NU, H, H_out);
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, const real *q0, real *H_out, int *code)
 {
     real X_in[NQ*LANES], joints[NJ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     close_loops(m, LANES, X, q0, joints, &why);
     H_run_lanes(m, X, joints, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int hexapod_6x6r_inverse_kinematics(const prepared *m, const real *X, const real *q0, real *q_out)
 {
     real joints[NJ] = {0}, q[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     inverse_kinematics_run(joints, q, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q, why.overflow);
     }
     copy(NJ, q, q_out);
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, const real *q0, real
     *q_out, int *code)
 {
     real X_in[NQ*LANES], joints[NJ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     close_loops(m, LANES, X, q0, joints, &why);
     inverse_kinematics_run_lanes(joints, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int hexapod_6x6r_joint_rates(const prepared *m, const real *X, const real *q0, const real *V, real
     *qd_out)
 {
     real joints[NJ] = {0}, qd[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     joint_rates_run(m, X, V, joints, qd, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd, why.overflow);
     }
     copy(NJ, qd, qd_out);
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *q0, const real *V,
     real *qd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], joints[NJ*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     close_loops(m, LANES, X, q0, joints, &why);
     joint_rates_run_lanes(m, X, V, joints, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int hexapod_6x6r_joint_accelerations(const prepared *m, const real *X, const real *q0, const real
     *V, const real *A, real *qdd_out)
 {
     real joints[NJ] = {0}, qdd[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     joint_accelerations_run(m, X, V, A, joints, qdd, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd, why.overflow);
     }
     copy(NJ, qdd, qdd_out);
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *q0, const real
     *V, const real *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], joints[NJ*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     close_loops(m, LANES, X, q0, joints, &why);
     joint_accelerations_run_lanes(m, X, V, A, joints, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int hexapod_6x6r_dynamics(const prepared *m, const real *X, const real *q0, const real *V, real
     *M_out, real *Z_out, real *H_out)
 {
     real joints[NJ] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     dynamics_run(m, X, V, joints, M, Z, H, &why);
     if (!is_finite(why.total[0])) {
@@ -8760,9 +6447,9 @@ int hexapod_6x6r_dynamics(const prepared *m, const real *X, const real *q0, cons
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *q0, const real *V, real
@@ -8770,16 +6457,16 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *q0, con
 {
     real X_in[NQ*LANES], V_in[NV*LANES], joints[NJ*LANES], M[NV*NV*LANES], Z[NV*LANES],
         H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     close_loops(m, LANES, X, q0, joints, &why);
     dynamics_run_lanes(m, X, V, joints, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -8961,14 +6648,9 @@ int hexapod_6x6r_inverse_dynamics(const prepared *m, const real *X, const real *
     static const real no_wrench[NW] = {0};
     real joints[NJ] = {0}, required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] =
         {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     required_run(m, X, V, A, joints, required, H, &why);
@@ -8984,7 +6666,7 @@ int hexapod_6x6r_inverse_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    return settled(&why, NU, tau_out);
+    return final_status(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *q0, const real
@@ -8992,7 +6674,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], joints[NJ*LANES],
         required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -9004,8 +6686,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_6(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
 }
 
 static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
@@ -9017,14 +6699,9 @@ int hexapod_6x6r_forward_dynamics(const prepared *m, const real *X, const real *
     static const real no_wrench[NW] = {0};
     real joints[NJ] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
         {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     dynamics_run(m, X, V, joints, M, Z, H, &why);
@@ -9044,7 +6721,7 @@ int hexapod_6x6r_forward_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *q0, const real
@@ -9053,7 +6730,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], joints[NJ*LANES],
         M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
         subtract_1[NV*LANES], A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -9069,8 +6746,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_6(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int hexapod_6x6r_complete_acceleration(const prepared *m, const real *X, const real *q0, const
@@ -9081,13 +6758,11 @@ int hexapod_6x6r_complete_acceleration(const prepared *m, const real *X, const r
     (void)q0;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int hexapod_6x6r_leg_reactions(const prepared *m, const real *X, const real *q0, const real *V,
@@ -9098,14 +6773,9 @@ int hexapod_6x6r_leg_reactions(const prepared *m, const real *X, const real *q0,
     real joints[NJ] = {0}, required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] =
         {0}, unsure_solve_1[1] = {0}, leg_force[6*NL] = {0}, actuator[36] = {0}, forces[NL*NL] = {0},
         work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     required_run(m, X, V, A, joints, required, H, &why);
@@ -9123,22 +6793,16 @@ int hexapod_6x6r_leg_reactions(const prepared *m, const real *X, const real *q0,
         forces[i] = leg_force[i];
     }
     add_forces(NL, 6, 1, places_forces, solve_1, actuator, forces);
-    check(NL*NL, 1, forces, why.overflow);
-    copy(NL*NL, forces, forces_out);
-    return settled(&why, NL*NL, forces_out);
+    return finished(NL*NL, forces, forces_out, &why);
 }
 
 int hexapod_6x6r_energy(const prepared *m, const real *X, const real *q0, const real *V, real
     *kinetic_out, real *potential_out)
 {
     real joints[NJ] = {0}, M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     M_run(m, X, joints, M, &why);
     potential_run(m, X, joints, potential_of_potential, &why);
@@ -9148,8 +6812,8 @@ int hexapod_6x6r_energy(const prepared *m, const real *X, const real *q0, const 
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int hexapod_6x6r_condition(const prepared *m, const real *X, const real *q0, real *sigma_out, real
@@ -9160,9 +6824,9 @@ int hexapod_6x6r_condition(const prepared *m, const real *X, const real *q0, rea
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real joints[NJ] = {0}, H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
@@ -9183,8 +6847,8 @@ int hexapod_6x6r_condition(const prepared *m, const real *X, const real *q0, rea
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int hexapod_6x6r_manipulability(const prepared *m, const real *X, const real *q0, real
@@ -9194,14 +6858,13 @@ int hexapod_6x6r_manipulability(const prepared *m, const real *X, const real *q0
     real joints[NJ] = {0}, H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
         subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0},
         singular_values_1[NV] = {0}, measure[1] = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     condition_run(m, X, joints, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -9219,8 +6882,8 @@ int hexapod_6x6r_manipulability(const prepared *m, const real *X, const real *q0
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int hexapod_6x6r_singularity_distance(const prepared *m, const real *X, const real *q0, real
@@ -9230,14 +6893,13 @@ int hexapod_6x6r_singularity_distance(const prepared *m, const real *X, const re
     real joints[NJ] = {0}, H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
         subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0},
         singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     condition_run(m, X, joints, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -9255,23 +6917,19 @@ int hexapod_6x6r_singularity_distance(const prepared *m, const real *X, const re
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q0, const real *q_actuated,
-    real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q0, const real
+    *q_actuated, real *residual_out)
 {
-    static const size_t places_gap[] = {0, 1, 2, 3, 4, 5};
+    static const size_t places_residual[] = {0, 1, 2, 3, 4, 5};
     real joints[NJ] = {0}, q[NJ] = {0}, q_of_inverse_kinematics_from_1[6] = {0}, subtract_1[NU] = {0},
-        gap[NU] = {0};
-    verdict why;
+        residual[NU] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     inverse_kinematics_run(joints, q, &why);
     take(6, 1, hexapod_6x6r_ACTUATED, q, q_of_inverse_kinematics_from_1);
@@ -9279,39 +6937,37 @@ static int mismatch_one(const prepared *m, const real *X, const real *q0, const 
         subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_1[i];
     }
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = subtract_1[i];
+        residual[i] = subtract_1[i];
     }
-    wrap_turns(NU, 1, places_gap, gap);
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    wrap_turns(NU, 1, places_residual, residual);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, const real *q0, real *slope_out)
 {
     real joints[NJ] = {0}, slope[NV*NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     H_run(m, X, joints, slope, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope, why.overflow);
     }
     copy(NV*NU, slope, slope_out);
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q0, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q0, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q0, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q0, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -9323,21 +6979,21 @@ static int search_mismatch(const prepared *m, const real *q0, const real *q_actu
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q0, q_actuated, next);
+            tried = pose_residual_one(m, trial, q0, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -9351,17 +7007,11 @@ int hexapod_6x6r_forward_kinematics(const prepared *m, const real *q_actuated, c
     const real *q0, real *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q0, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q0, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int hexapod_6x6r_dissipation(const prepared *m, const real *X, const real *q0, const real *V, real
@@ -9371,35 +7021,27 @@ int hexapod_6x6r_dissipation(const prepared *m, const real *X, const real *q0, c
     (void)X;
     (void)q0;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int hexapod_6x6r_momentum(const prepared *m, const real *X, const real *q0, const real *V, real
     *momentum_out)
 {
     real joints[NJ] = {0}, M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     M_run(m, X, joints, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int hexapod_6x6r_joint_margins(const prepared *m, const real *X, const real *q0, real
@@ -9408,9 +7050,9 @@ int hexapod_6x6r_joint_margins(const prepared *m, const real *X, const real *q0,
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29};
     real joints[NJ] = {0}, q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     inverse_kinematics_run(joints, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
@@ -9418,253 +7060,174 @@ int hexapod_6x6r_joint_margins(const prepared *m, const real *X, const real *q0,
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int hexapod_6x6r_within_limits(const prepared *m, const real *X, const real *q0, real *within_out)
 {
     real joints[NJ] = {0}, q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     inverse_kinematics_run(joints, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int hexapod_6x6r_actuator_positions(const prepared *m, const real *X, const real *q0, real *q_out)
 {
     real joints[NJ] = {0}, q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     inverse_kinematics_run(joints, q_of_inverse_kinematics, &why);
     take(NU, 1, hexapod_6x6r_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int hexapod_6x6r_actuator_rates(const prepared *m, const real *X, const real *q0, const real *V,
     real *qd_out)
 {
     real joints[NJ] = {0}, qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     joint_rates_run(m, X, V, joints, qd_of_joint_rates, &why);
     take(NU, 1, hexapod_6x6r_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int hexapod_6x6r_actuator_accelerations(const prepared *m, const real *X, const real *q0, const
     real *V, const real *A, real *qdd_out)
 {
     real joints[NJ] = {0}, qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     joint_accelerations_run(m, X, V, A, joints, qdd_of_joint_accelerations, &why);
     take(NU, 1, hexapod_6x6r_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int hexapod_6x6r_power(const prepared *m, const real *X, const real *q0, const real *V, const real
     *tau, real *power_out)
 {
     real joints[NJ] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     H_run(m, X, joints, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int hexapod_6x6r_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
-    check(9, 1, R, why.overflow);
-    copy(9, R, R_out);
-    return settled(&why, 9, R_out);
+    return finished(9, R, R_out, &why);
 }
 
 int hexapod_6x6r_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(R, 9);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(9, 1, R, why.invalid);
-    }
+    check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int hexapod_6x6r_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const V_from_3 = V + 3;
     const real *const X_from_3 = X + 3;
     quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
-    const real *const V_from_0 = V;
-    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    beside(1, 3, 4, V, quaternion_rate_1, X_dot);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int hexapod_6x6r_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(rpy, 3);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(3, 1, rpy, why.invalid);
-    }
+    check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int hexapod_6x6r_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
-    const real *const X_from_0 = X;
+    check_two(NQ, X, NV, step, why.invalid);
     const real *const X_from_3 = X + 3;
-    const real *const step_from_0 = step;
     const real *const step_from_3 = step + 3;
     turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X_from_0[i] + step_from_0[i];
+        add_1[i] = X[i] + step[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int hexapod_6x6r_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
+    check_two(NQ, X0, NQ, X1, why.invalid);
     const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
     const real *const X1_from_3 = X1 + 3;
     turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
+        subtract_1[i] = X1[i] - X0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int hexapod_6x6r_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
-        turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
-    verdict why;
+    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
-    const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
-    const real *const X1_from_3 = X1 + 3;
-    turn_between(X0_from_3, X1_from_3, turn_between_1);
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
-    }
-    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(hexapod_6x6r_difference(X0, X1, join_1), &why);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const X0_from_0_2 = X0;
     const real *const X0_from_3_2 = X0 + 3;
-    const real *const scale_1_from_0 = scale_1;
     const real *const scale_1_from_3 = scale_1 + 3;
     turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
+        add_1[i] = X0[i] + scale_1[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

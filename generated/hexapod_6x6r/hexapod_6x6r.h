@@ -198,7 +198,7 @@ int hexapod_6x6r_M(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, 
 size_t hexapod_6x6r_M_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, hexapod_6x6r_real *M, int *status);
 
-/* Velocity and gravity terms Z. 5367 mul, 3996 add, 30 div, 30 sqrt, 60 trig; the iteration of q
+/* Velocity and gravity terms Z. 5376 mul, 4002 add, 30 div, 30 sqrt, 60 trig; the iteration of q
    apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: Z (NV). */
 int hexapod_6x6r_Z(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *Z);
@@ -230,7 +230,7 @@ size_t hexapod_6x6r_joint_rates_batch(const hexapod_6x6r_model *model, size_t n,
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
     hexapod_6x6r_real *rates, int *status);
 
-/* Accelerations of all joints. 3630 mul, 2382 add, 30 div, 30 sqrt, 60 trig; the iteration of q
+/* Accelerations of all joints. 3618 mul, 2373 add, 30 div, 30 sqrt, 60 trig; the iteration of q
    apart. In: X (NQ), q0 (NJ, or NULL), V (NV), A (NV). Out: accelerations (NJ). */
 int hexapod_6x6r_joint_accelerations(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A,
@@ -239,7 +239,7 @@ size_t hexapod_6x6r_joint_accelerations_batch(const hexapod_6x6r_model *model, s
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
     hexapod_6x6r_real *A, hexapod_6x6r_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 10683 mul, 8139 add, 30 div, 30 sqrt, 60 trig; the
+/* M, Z and H together, sharing the work. 10656 mul, 8121 add, 30 div, 30 sqrt, 60 trig; the
    iteration of q apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: M (NV x NV), Z (NV), H (NV x
    NU). */
 int hexapod_6x6r_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
@@ -249,7 +249,7 @@ size_t hexapod_6x6r_dynamics_batch(const hexapod_6x6r_model *model, size_t n, co
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
     hexapod_6x6r_real *M, hexapod_6x6r_real *Z, hexapod_6x6r_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 5649 mul, 4221 add, 30 div, 30 sqrt, 60
+/* Actuator forces tau for the acceleration A, by Eq. 3. 5631 mul, 4203 add, 30 div, 30 sqrt, 60
    trig; the solution of the linear equations apart; the iteration of q apart. In: X (NQ), q0 (NJ,
    or NULL), V (NV), A (NV), wrench (NW, or NULL). Out: tau (NU). */
 int hexapod_6x6r_inverse_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
@@ -259,7 +259,7 @@ size_t hexapod_6x6r_inverse_dynamics_batch(const hexapod_6x6r_model *model, size
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
     hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 10683 mul, 8139 add, 30 div, 30
+/* Acceleration A under the actuator forces tau and the wrench. 10656 mul, 8121 add, 30 div, 30
    sqrt, 60 trig; the solution of the linear equations apart; the iteration of q apart. In: X
    (NQ), q0 (NJ, or NULL), V (NV), tau (NU), wrench (NW, or NULL). Out: A (NV). */
 int hexapod_6x6r_forward_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
@@ -281,7 +281,7 @@ size_t hexapod_6x6r_complete_acceleration_batch(const hexapod_6x6r_model *model,
     *status);
 
 /* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
-   give the forces of inverse_dynamics. 5502 mul, 4050 add, 30 div, 30 sqrt, 60 trig; inverse
+   give the forces of inverse_dynamics. 5490 mul, 4041 add, 30 div, 30 sqrt, 60 trig; inverse
    dynamics apart; the iteration of q apart. In: X (NQ), q0 (NJ, or NULL), V (NV), A (NV), wrench
    (NW, or NULL). Out: forces (6 x 6). */
 int hexapod_6x6r_leg_reactions(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
@@ -385,7 +385,7 @@ size_t hexapod_6x6r_actuator_rates_batch(const hexapod_6x6r_model *model, size_t
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
     hexapod_6x6r_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 3630 mul, 2382 add, 30 div, 30 sqrt,
+/* Accelerations of the actuated joints, in the order of tau. 3618 mul, 2373 add, 30 div, 30 sqrt,
    60 trig; the iteration of q apart. In: X (NQ), q0 (NJ, or NULL), V (NV), A (NV). Out:
    accelerations (NU). */
 int hexapod_6x6r_actuator_accelerations(const hexapod_6x6r_model *model, const hexapod_6x6r_real

@@ -98,7 +98,7 @@ _SHAPES = {  # of the arrays that functions give
     "lengths": (2,),
     "pivots": (6,),
     "reach": (6,),
-    "gap_six_r": (6, 5),
+    "residual_six_r": (6, 5),
     "jacobian_six_r": (6, 25),
 }
 # Where the entries of a leg type's legs stand in these arrays, row by row.
@@ -150,7 +150,7 @@ _actuator_six_r = (
 _pivots_six_r = (
     [0, 1, 2, 3, 4, 5],
 )
-_gap_six_r_six_r = (
+_residual_six_r_six_r = (
     [0, 5, 10, 15, 20, 25],
     [1, 6, 11, 16, 21, 26],
     [2, 7, 12, 17, 22, 27],
@@ -1035,9 +1035,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_six_r,
         (six_r_J_1_in_spec1_xx, six_r_J_2_in_spec2_xx, six_r_J_2_in_spec2_xy,
@@ -1103,9 +1103,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_six_r,
         (six_r_J_1_in_spec1_xx, six_r_J_2_in_spec2_xy, six_r_J_2_in_spec2_xz,
@@ -1953,11 +1953,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -2234,9 +2234,9 @@ def _close_legs(p, X, q, run, inputs, arrays, joints, turning, rows, signs):
             break
         chosen = [{"X": X, "q": q}[name][:, at] for name in inputs]
         m = _mode(p, at.size)
-        gap, jacobian = m.run(run, arrays, *chosen)
+        residuals, jacobian = m.run(run, arrays, *chosen)
         jacobian = np.moveaxis(jacobian.reshape(legs, -1, unknowns, at.size), 0, 2)
-        step = _newton_step(jacobian, np.moveaxis(gap, 0, 1))
+        step = _newton_step(jacobian, np.moveaxis(residuals, 0, 1))
         largest = np.max(np.abs(step), axis=(0, 1))
         step *= np.minimum(1.0, 0.5 / largest)
         q[joints[:, :, None], at] += np.moveaxis(step, 1, 0)
@@ -2253,13 +2253,13 @@ def _close_legs(p, X, q, run, inputs, arrays, joints, turning, rows, signs):
     q[:, lost] = np.nan
 
 
-def _newton_step(jacobian, gap):
-    """Solution of jacobian step = gap per leg, least squares where there are fewer unknowns."""
+def _newton_step(jacobian, residuals):
+    """Solution of jacobian step = residuals per leg, least squares where there are fewer unknowns."""
     rows, unknowns, *batch = jacobian.shape
-    jacobian, gap = jacobian.reshape(rows, unknowns, -1), gap.reshape(rows, -1)
+    jacobian, residuals = jacobian.reshape(rows, unknowns, -1), residuals.reshape(rows, -1)
     if rows == unknowns:
-        return _solve(jacobian, gap).reshape(unknowns, *batch)
-    return _least_squares(jacobian, gap, 1e-15).reshape(unknowns, *batch)
+        return _solve(jacobian, residuals).reshape(unknowns, *batch)
+    return _least_squares(jacobian, residuals, 1e-15).reshape(unknowns, *batch)
 
 
 def _least_squares(a, b, least):
@@ -2277,8 +2277,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -2286,7 +2286,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -2294,11 +2294,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -2346,17 +2346,16 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 10683 mul, 8139 add, 30 div, 30 sqrt, 60 trig
+# dynamics: 10656 mul, 8121 add, 30 div, 30 sqrt, 60 trig
 def _run_dynamics(m, X, V, q):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_3 = X[3]
     X_4 = X[4]
@@ -2432,39 +2431,12 @@ def _run_dynamics(m, X, V, q):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_six_r_xx, M_tt_xy, M_tt_xz, M_tt_six_r_yy, M_tt_yz, M_tt_six_r_zz, M_ta_xx,
         M_ta_six_r_xy, M_ta_six_r_xz, M_ta_six_r_yx, M_ta_t, M_ta_six_r_yz, M_ta_six_r_zx,
@@ -2520,6 +2492,16 @@ def _run_dynamics(m, X, V, q):
         six_r_J_5_t = sin(six_r_q_5)
         six_r_J_5_in_axes4_yz = (
         six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_x - six_r_J_5_in_spec5_yz*six_r_J_5_t
+        )
+        # (six_r-S) from the base point to the connection point
+        six_r_q_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
         )
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
         six_r_c_1 = cos(six_r_q_1)
@@ -2580,15 +2562,6 @@ def _run_dynamics(m, X, V, q):
         )
         axis_x_six_r_axes5_z = (
         axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
-        )
-        six_r_q_x = (
-        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
-        )
-        six_r_q_y = (
-        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
-        )
-        six_r_q_z = (
-        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
         )
         six_r_S_dot_t_14 = omega_y*six_r_q_z - omega_z*six_r_q_y
         six_r_S_dot_t_15 = omega_z*six_r_q_x - omega_x*six_r_q_z
@@ -2730,6 +2703,15 @@ def _run_dynamics(m, X, V, q):
         six_r_end_p1_in_axes5_y = (
         six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
         )
+        six_r_n_m1_t_11 = (
+        six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_t_12 = (
+        six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_in_axes4_z = (
+        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        )
         six_r_n_m1_x = (
         axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y
         )
@@ -2741,6 +2723,15 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
         six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_n_m2_t = (
+        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_t_2 = (
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
         six_r_n_m2_x = (
         axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
             axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z
@@ -2754,175 +2745,158 @@ def _run_dynamics(m, X, V, q):
             axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z
         )
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_w_1_t = (
-        six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        six_r_w_1_t = six_r_n_m1_t_11*six_r_size
+        six_r_w_1_t_2 = six_r_n_m2_t*six_r_size
+        six_r_w_1_t_3 = six_r_n_m1_t_12*six_r_size
+        six_r_w_1_t_4 = six_r_n_m2_t_2*six_r_size
+        six_r_w_1_t_5 = six_r_n_m1_in_axes4_z*six_r_size
+        six_r_w_1_t_6 = six_r_n_m2_in_axes4_z*six_r_size
+        six_r_w_1_t_7 = six_r_end_p1_in_axes5_y*six_r_size
+        six_r_w_1_t_8 = sqrt(six_r_size_t + six_r_w_1_t_7*six_r_w_1_t_7)
+        inv_six_r_w_1_t_8 = 1.0/six_r_w_1_t_8
+        six_r_w_1_t_9 = inv_six_r_w_1_t_8*six_r_platform_joint_offset_x
+        six_r_w_1_t_10 = inv_six_r_w_1_t_8*six_r_w_1_t_7
+        six_r_w_1_t_11 = six_r_w_1_t_10*six_r_w_1_t_6
+        six_r_w_1_t_12 = six_r_w_1_t_11*six_r_w_1_t_9
+        six_r_w_1_t_13 = six_r_w_1_t_6 - six_r_w_1_t_10*six_r_w_1_t_11
+        six_r_w_1_t_14 = six_r_v_1_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_10*six_r_w_1_t_2
+        six_r_w_1_t_15 = six_r_v_1_in_axes5_y - six_r_w_1_t_14*six_r_w_1_t_9
+        six_r_w_1_t_16 = six_r_w_1_t_2 + six_r_w_1_t_10*six_r_w_1_t_14
+        six_r_w_1_t_17 = six_r_w_1_t_10*six_r_w_1_t_4
+        six_r_w_1_t_18 = six_r_v_2_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_v_2_in_axes5_y - six_r_w_1_t_18*six_r_w_1_t_9
+        six_r_w_1_t_20 = six_r_w_1_t_4 + six_r_w_1_t_10*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_w_1_t_17 - six_r_v_3_in_axes5_y*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_3_in_axes5_y + six_r_w_1_t_21*six_r_w_1_t_9
+        six_r_w_1_t_23 = six_r_w_1_t_4 - six_r_w_1_t_10*six_r_w_1_t_21
+        six_r_w_1_t_24 = (
+        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_13*six_r_w_1_t_13 + six_r_w_1_t_5*six_r_w_1_t_5)
         )
-        six_r_w_1_t_2 = (
-        six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        inv_six_r_w_1_t_24 = 1.0/six_r_w_1_t_24
+        six_r_w_1_t_25 = inv_six_r_w_1_t_24*six_r_w_1_t_12
+        six_r_w_1_t_26 = inv_six_r_w_1_t_24*six_r_v_4_in_axes5_z
+        six_r_w_1_t_27 = inv_six_r_w_1_t_24*six_r_w_1_t_5
+        six_r_w_1_t_28 = inv_six_r_w_1_t_24*six_r_w_1_t_13
+        six_r_w_1_t_29 = (
+        six_r_w_1_t*six_r_w_1_t_27 + six_r_w_1_t_15*six_r_w_1_t_25 + six_r_w_1_t_16*six_r_w_1_t_28
+            - six_r_v_1_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_3 = (
-        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_w_1_t_30 = six_r_w_1_t_25*six_r_w_1_t_29 - six_r_w_1_t_15
+        six_r_w_1_t_31 = six_r_v_1_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_29
+        six_r_w_1_t_32 = six_r_w_1_t_27*six_r_w_1_t_29 - six_r_w_1_t
+        six_r_w_1_t_33 = six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_16
+        six_r_w_1_t_34 = six_r_w_1_t_27*six_r_w_1_t_3
+        six_r_w_1_t_35 = (
+        six_r_w_1_t_34 + six_r_w_1_t_19*six_r_w_1_t_25 + six_r_w_1_t_20*six_r_w_1_t_28 -
+            six_r_v_2_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_w_1_t_36 = six_r_w_1_t_25*six_r_w_1_t_35 - six_r_w_1_t_19
+        six_r_w_1_t_37 = six_r_v_2_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_35
+        six_r_w_1_t_38 = six_r_w_1_t_27*six_r_w_1_t_35 - six_r_w_1_t_3
+        six_r_w_1_t_39 = six_r_w_1_t_28*six_r_w_1_t_35 - six_r_w_1_t_20
+        six_r_w_1_t_40 = (
+        six_r_w_1_t_34 + six_r_w_1_t_22*six_r_w_1_t_25 + six_r_w_1_t_23*six_r_w_1_t_28 -
+            six_r_v_3_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_5 = six_r_size*six_r_w_1_t
-        six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
-        six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
-        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
-        six_r_w_1_t_9 = (
-        six_r_size*(-six_r_J_5_t*six_r_n_m1_in_axes5_y -
-            six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y)
+        six_r_w_1_t_41 = six_r_w_1_t_25*six_r_w_1_t_40 - six_r_w_1_t_22
+        six_r_w_1_t_42 = six_r_v_3_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_40
+        six_r_w_1_t_43 = six_r_w_1_t_27*six_r_w_1_t_40 - six_r_w_1_t_3
+        six_r_w_1_t_44 = six_r_w_1_t_28*six_r_w_1_t_40 - six_r_w_1_t_23
+        six_r_w_1_t_45 = (
+        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_30*six_r_w_1_t_30 +
+            six_r_w_1_t_31*six_r_w_1_t_31 + six_r_w_1_t_32*six_r_w_1_t_32 +
+            six_r_w_1_t_33*six_r_w_1_t_33)
         )
-        six_r_w_1_t_10 = six_r_J_5_t*six_r_end_p1_in_axes5_z*six_r_size
-        six_r_w_1_t_11 = six_r_end_p1_in_axes5_y*six_r_size
-        six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
-        inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
-        six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x
-        six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11
-        six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14
-        six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15
-        six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15
-        six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_14*six_r_w_1_t_6
-        six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18
-        six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18
-        six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8
-        six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21
-        six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22
-        six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22
-        six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13
-        six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25
-        six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25
-        six_r_w_1_t_28 = (
-        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_16*six_r_w_1_t_16 +
-            six_r_w_1_t_17*six_r_w_1_t_17 + six_r_w_1_t_9*six_r_w_1_t_9)
+        inv_six_r_w_1_t_45 = 1.0/six_r_w_1_t_45
+        six_r_w_1_t_46 = inv_six_r_w_1_t_45*six_r_v_1_in_axes5_x
+        six_r_w_1_t_47 = inv_six_r_w_1_t_45*six_r_w_1_t_30
+        six_r_w_1_t_48 = inv_six_r_w_1_t_45*six_r_w_1_t_31
+        six_r_w_1_t_49 = inv_six_r_w_1_t_45*six_r_w_1_t_32
+        six_r_w_1_t_50 = inv_six_r_w_1_t_45*six_r_w_1_t_33
+        six_r_w_1_t_51 = (
+        six_r_v_2_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_36*six_r_w_1_t_47 +
+            six_r_w_1_t_37*six_r_w_1_t_48 + six_r_w_1_t_38*six_r_w_1_t_49 +
+            six_r_w_1_t_39*six_r_w_1_t_50
         )
-        inv_six_r_w_1_t_28 = 1.0/six_r_w_1_t_28
-        six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16
-        six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z
-        six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9
-        six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17
-        six_r_w_1_t_33 = (
-        six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32 +
-            six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_52 = six_r_v_2_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_51
+        six_r_w_1_t_53 = six_r_w_1_t_36 - six_r_w_1_t_47*six_r_w_1_t_51
+        six_r_w_1_t_54 = six_r_w_1_t_37 - six_r_w_1_t_48*six_r_w_1_t_51
+        six_r_w_1_t_55 = six_r_w_1_t_38 - six_r_w_1_t_49*six_r_w_1_t_51
+        six_r_w_1_t_56 = six_r_w_1_t_39 - six_r_w_1_t_50*six_r_w_1_t_51
+        six_r_w_1_t_57 = (
+        six_r_v_3_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_41*six_r_w_1_t_47 +
+            six_r_w_1_t_42*six_r_w_1_t_48 + six_r_w_1_t_43*six_r_w_1_t_49 +
+            six_r_w_1_t_44*six_r_w_1_t_50
         )
-        six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19
-        six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33
-        six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5
-        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20
-        six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7
-        six_r_w_1_t_39 = (
-        six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32 -
-            six_r_v_2_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_58 = six_r_v_3_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_57
+        six_r_w_1_t_59 = six_r_w_1_t_41 - six_r_w_1_t_47*six_r_w_1_t_57
+        six_r_w_1_t_60 = six_r_w_1_t_42 - six_r_w_1_t_48*six_r_w_1_t_57
+        six_r_w_1_t_61 = six_r_w_1_t_43 - six_r_w_1_t_49*six_r_w_1_t_57
+        six_r_w_1_t_62 = six_r_w_1_t_44 - six_r_w_1_t_50*six_r_w_1_t_57
+        six_r_w_1_t_63 = (
+        sqrt(six_r_w_1_t_52*six_r_w_1_t_52 + six_r_w_1_t_53*six_r_w_1_t_53 +
+            six_r_w_1_t_54*six_r_w_1_t_54 + six_r_w_1_t_55*six_r_w_1_t_55 +
+            six_r_w_1_t_56*six_r_w_1_t_56)
         )
-        six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23
-        six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39
-        six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7
-        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24
-        six_r_w_1_t_44 = (
-        six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32 -
-            six_r_v_3_in_axes5_z*six_r_w_1_t_30
+        inv_six_r_w_1_t_63 = 1.0/six_r_w_1_t_63
+        six_r_w_1_t_64 = inv_six_r_w_1_t_63*six_r_w_1_t_52
+        six_r_w_1_t_65 = inv_six_r_w_1_t_63*six_r_w_1_t_53
+        six_r_w_1_t_66 = inv_six_r_w_1_t_63*six_r_w_1_t_54
+        six_r_w_1_t_67 = inv_six_r_w_1_t_63*six_r_w_1_t_55
+        six_r_w_1_t_68 = inv_six_r_w_1_t_63*six_r_w_1_t_56
+        six_r_w_1_t_69 = (
+        six_r_w_1_t_58*six_r_w_1_t_64 + six_r_w_1_t_59*six_r_w_1_t_65 +
+            six_r_w_1_t_60*six_r_w_1_t_66 + six_r_w_1_t_61*six_r_w_1_t_67 +
+            six_r_w_1_t_62*six_r_w_1_t_68
         )
-        six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26
-        six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44
-        six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7
-        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27
-        six_r_w_1_t_49 = (
-        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_34*six_r_w_1_t_34 +
-            six_r_w_1_t_35*six_r_w_1_t_35 + six_r_w_1_t_36*six_r_w_1_t_36 +
-            six_r_w_1_t_37*six_r_w_1_t_37)
+        six_r_w_1_t_70 = six_r_w_1_t_58 - six_r_w_1_t_64*six_r_w_1_t_69
+        six_r_w_1_t_71 = six_r_w_1_t_59 - six_r_w_1_t_65*six_r_w_1_t_69
+        six_r_w_1_t_72 = six_r_w_1_t_60 - six_r_w_1_t_66*six_r_w_1_t_69
+        six_r_w_1_t_73 = six_r_w_1_t_61 - six_r_w_1_t_67*six_r_w_1_t_69
+        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_69
+        six_r_w_1_t_75 = (
+        sqrt(six_r_w_1_t_70*six_r_w_1_t_70 + six_r_w_1_t_71*six_r_w_1_t_71 +
+            six_r_w_1_t_72*six_r_w_1_t_72 + six_r_w_1_t_73*six_r_w_1_t_73 +
+            six_r_w_1_t_74*six_r_w_1_t_74)
         )
-        inv_six_r_w_1_t_49 = 1.0/six_r_w_1_t_49
-        six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x
-        six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34
-        six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35
-        six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36
-        six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37
-        six_r_w_1_t_55 = (
-        six_r_v_2_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_40*six_r_w_1_t_51 +
-            six_r_w_1_t_41*six_r_w_1_t_52 + six_r_w_1_t_42*six_r_w_1_t_53 +
-            six_r_w_1_t_43*six_r_w_1_t_54
-        )
-        six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55
-        six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55
-        six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55
-        six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55
-        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55
-        six_r_w_1_t_61 = (
-        six_r_v_3_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_45*six_r_w_1_t_51 +
-            six_r_w_1_t_46*six_r_w_1_t_52 + six_r_w_1_t_47*six_r_w_1_t_53 +
-            six_r_w_1_t_48*six_r_w_1_t_54
-        )
-        six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61
-        six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61
-        six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61
-        six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61
-        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61
-        six_r_w_1_t_67 = (
-        sqrt(six_r_w_1_t_56*six_r_w_1_t_56 + six_r_w_1_t_57*six_r_w_1_t_57 +
-            six_r_w_1_t_58*six_r_w_1_t_58 + six_r_w_1_t_59*six_r_w_1_t_59 +
-            six_r_w_1_t_60*six_r_w_1_t_60)
-        )
-        inv_six_r_w_1_t_67 = 1.0/six_r_w_1_t_67
-        six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56
-        six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57
-        six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58
-        six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59
-        six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60
-        six_r_w_1_t_73 = (
-        six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69 +
-            six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72
-        )
-        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73
-        six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73
-        six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73
-        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73
-        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73
-        six_r_w_1_t_79 = (
-        sqrt(six_r_w_1_t_74*six_r_w_1_t_74 + six_r_w_1_t_75*six_r_w_1_t_75 +
-            six_r_w_1_t_76*six_r_w_1_t_76 + six_r_w_1_t_77*six_r_w_1_t_77 +
-            six_r_w_1_t_78*six_r_w_1_t_78)
-        )
-        inv_six_r_w_1_t_79 = 1.0/six_r_w_1_t_79
-        six_r_w_1_t_80 = inv_six_r_w_1_t_79*six_r_w_1_t_74
-        six_r_w_1_t_81 = inv_six_r_w_1_t_79*six_r_w_1_t_75
-        six_r_w_1_t_82 = inv_six_r_w_1_t_79*six_r_w_1_t_76
-        six_r_w_1_t_83 = inv_six_r_w_1_t_49*inv_six_r_w_1_t_67*six_r_w_1_t_55
-        six_r_w_1_t_84 = (
-        inv_six_r_w_1_t_79*(inv_six_r_w_1_t_49*six_r_w_1_t_61 - six_r_w_1_t_73*six_r_w_1_t_83)
+        inv_six_r_w_1_t_75 = 1.0/six_r_w_1_t_75
+        six_r_w_1_t_76 = inv_six_r_w_1_t_75*six_r_w_1_t_70
+        six_r_w_1_t_77 = inv_six_r_w_1_t_75*six_r_w_1_t_71
+        six_r_w_1_t_78 = inv_six_r_w_1_t_75*six_r_w_1_t_72
+        six_r_w_1_t_79 = inv_six_r_w_1_t_45*inv_six_r_w_1_t_63*six_r_w_1_t_51
+        six_r_w_1_t_80 = (
+        inv_six_r_w_1_t_75*(inv_six_r_w_1_t_45*six_r_w_1_t_57 - six_r_w_1_t_69*six_r_w_1_t_79)
         )
         six_r_w_1_in_axes5_x = (
-        inv_six_r_w_1_t_49*six_r_w_1_t_50 - six_r_w_1_t_68*six_r_w_1_t_83 -
-            six_r_w_1_t_80*six_r_w_1_t_84
+        inv_six_r_w_1_t_45*six_r_w_1_t_46 - six_r_w_1_t_64*six_r_w_1_t_79 -
+            six_r_w_1_t_76*six_r_w_1_t_80
         )
         six_r_w_1_in_axes5_y = (
-        six_r_w_1_t_69*six_r_w_1_t_83 + six_r_w_1_t_81*six_r_w_1_t_84 -
-            inv_six_r_w_1_t_49*six_r_w_1_t_51
+        six_r_w_1_t_65*six_r_w_1_t_79 + six_r_w_1_t_77*six_r_w_1_t_80 -
+            inv_six_r_w_1_t_45*six_r_w_1_t_47
         )
         six_r_w_1_in_axes5_z = (
-        inv_six_r_w_1_t_49*six_r_w_1_t_52 - six_r_w_1_t_70*six_r_w_1_t_83 -
-            six_r_w_1_t_82*six_r_w_1_t_84
+        inv_six_r_w_1_t_45*six_r_w_1_t_48 - six_r_w_1_t_66*six_r_w_1_t_79 -
+            six_r_w_1_t_78*six_r_w_1_t_80
         )
         # (six_r-m1_w_1) moment part 1 of reciprocal wrench 1
-        six_r_m1_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_77
+        six_r_m1_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_73
         six_r_m1_w_1_t_2 = (
-        six_r_size*(six_r_m1_w_1_t*six_r_w_1_t_84 + six_r_w_1_t_71*six_r_w_1_t_83 -
-            inv_six_r_w_1_t_49*six_r_w_1_t_53)
+        six_r_size*(six_r_m1_w_1_t*six_r_w_1_t_80 + six_r_w_1_t_67*six_r_w_1_t_79 -
+            inv_six_r_w_1_t_45*six_r_w_1_t_49)
         )
         # (six_r-m2_w_1) moment part 2 of reciprocal wrench 1
-        six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78
+        six_r_m2_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_74
         six_r_m2_w_1_t_2 = (
-        six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_84 + six_r_w_1_t_72*six_r_w_1_t_83 -
-            inv_six_r_w_1_t_49*six_r_w_1_t_54)
+        six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_80 + six_r_w_1_t_68*six_r_w_1_t_79 -
+            inv_six_r_w_1_t_45*six_r_w_1_t_50)
         )
         # (six_r-w_2) force part of reciprocal wrench 2
-        six_r_w_2_t = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73
-        six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 - six_r_w_1_t_80*six_r_w_2_t
-        six_r_w_2_in_axes5_y = six_r_w_1_t_81*six_r_w_2_t - inv_six_r_w_1_t_67*six_r_w_1_t_69
-        six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 - six_r_w_1_t_82*six_r_w_2_t
+        six_r_w_2_t = inv_six_r_w_1_t_63*inv_six_r_w_1_t_75*six_r_w_1_t_69
+        six_r_w_2_in_axes5_x = inv_six_r_w_1_t_63*six_r_w_1_t_64 - six_r_w_1_t_76*six_r_w_2_t
+        six_r_w_2_in_axes5_y = six_r_w_1_t_77*six_r_w_2_t - inv_six_r_w_1_t_63*six_r_w_1_t_65
+        six_r_w_2_in_axes5_z = inv_six_r_w_1_t_63*six_r_w_1_t_66 - six_r_w_1_t_78*six_r_w_2_t
         six_r_w_2_x = (
         axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x + axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y +
             axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z
@@ -2936,81 +2910,81 @@ def _run_dynamics(m, X, V, q):
             axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z
         )
         # (six_r-m1_w_2) moment part 1 of reciprocal wrench 2
-        six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_71 - six_r_m1_w_1_t*six_r_w_2_t)
+        six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_67 - six_r_m1_w_1_t*six_r_w_2_t)
         # (six_r-m2_w_2) moment part 2 of reciprocal wrench 2
-        six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_72 - six_r_m2_w_1_t*six_r_w_2_t)
+        six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_68 - six_r_m2_w_1_t*six_r_w_2_t)
         # (six_r-w_3) force part of reciprocal wrench 3
-        six_r_w_3_in_axes5_x = inv_six_r_w_1_t_79*six_r_w_1_t_80
-        six_r_w_3_t = inv_six_r_w_1_t_79*six_r_w_1_t_81
-        six_r_w_3_in_axes5_z = inv_six_r_w_1_t_79*six_r_w_1_t_82
+        six_r_w_3_in_axes5_x = inv_six_r_w_1_t_75*six_r_w_1_t_76
+        six_r_w_3_t = inv_six_r_w_1_t_75*six_r_w_1_t_77
+        six_r_w_3_in_axes5_z = inv_six_r_w_1_t_75*six_r_w_1_t_78
         # (six_r-m1_w_3) moment part 1 of reciprocal wrench 3
-        six_r_m1_w_3 = inv_six_r_w_1_t_79*six_r_m1_w_1_t*six_r_size
+        six_r_m1_w_3 = inv_six_r_w_1_t_75*six_r_m1_w_1_t*six_r_size
         # (six_r-m2_w_3) moment part 2 of reciprocal wrench 3
-        six_r_m2_w_3 = inv_six_r_w_1_t_79*six_r_m2_w_1_t*six_r_size
+        six_r_m2_w_3 = inv_six_r_w_1_t_75*six_r_m2_w_1_t*six_r_size
         # (six_r-w_4) force part of reciprocal wrench 4
-        six_r_w_4_t = inv_six_r_w_1_t_28*inv_six_r_w_1_t_49*six_r_w_1_t_33
+        six_r_w_4_t = inv_six_r_w_1_t_24*inv_six_r_w_1_t_45*six_r_w_1_t_29
         six_r_w_4_t_2 = (
-        inv_six_r_w_1_t_67*(inv_six_r_w_1_t_28*six_r_w_1_t_39 - six_r_w_1_t_55*six_r_w_4_t)
+        inv_six_r_w_1_t_63*(inv_six_r_w_1_t_24*six_r_w_1_t_35 - six_r_w_1_t_51*six_r_w_4_t)
         )
         six_r_w_4_t_3 = (
-        inv_six_r_w_1_t_79*(six_r_w_1_t_61*six_r_w_4_t + six_r_w_1_t_73*six_r_w_4_t_2 -
-            inv_six_r_w_1_t_28*six_r_w_1_t_44)
+        inv_six_r_w_1_t_75*(six_r_w_1_t_57*six_r_w_4_t + six_r_w_1_t_69*six_r_w_4_t_2 -
+            inv_six_r_w_1_t_24*six_r_w_1_t_40)
         )
         six_r_w_4_in_axes5_x = (
-        six_r_w_1_t_50*six_r_w_4_t + six_r_w_1_t_68*six_r_w_4_t_2 - six_r_w_1_t_80*six_r_w_4_t_3
+        six_r_w_1_t_46*six_r_w_4_t + six_r_w_1_t_64*six_r_w_4_t_2 - six_r_w_1_t_76*six_r_w_4_t_3
         )
         six_r_w_4_in_axes5_y = (
-        six_r_w_1_t_81*six_r_w_4_t_3 - inv_six_r_w_1_t_28*six_r_w_1_t_29 -
-            six_r_w_1_t_51*six_r_w_4_t - six_r_w_1_t_69*six_r_w_4_t_2
+        six_r_w_1_t_77*six_r_w_4_t_3 - inv_six_r_w_1_t_24*six_r_w_1_t_25 -
+            six_r_w_1_t_47*six_r_w_4_t - six_r_w_1_t_65*six_r_w_4_t_2
         )
         six_r_w_4_in_axes5_z = (
-        inv_six_r_w_1_t_28*six_r_w_1_t_30 + six_r_w_1_t_52*six_r_w_4_t +
-            six_r_w_1_t_70*six_r_w_4_t_2 - six_r_w_1_t_82*six_r_w_4_t_3
+        inv_six_r_w_1_t_24*six_r_w_1_t_26 + six_r_w_1_t_48*six_r_w_4_t +
+            six_r_w_1_t_66*six_r_w_4_t_2 - six_r_w_1_t_78*six_r_w_4_t_3
         )
         # (six_r-m1_w_4) moment part 1 of reciprocal wrench 4
         six_r_m1_w_4 = (
-        six_r_size*(inv_six_r_w_1_t_28*six_r_w_1_t_31 + six_r_w_1_t_53*six_r_w_4_t +
-            six_r_w_1_t_71*six_r_w_4_t_2 - six_r_m1_w_1_t*six_r_w_4_t_3)
+        six_r_size*(inv_six_r_w_1_t_24*six_r_w_1_t_27 + six_r_w_1_t_49*six_r_w_4_t +
+            six_r_w_1_t_67*six_r_w_4_t_2 - six_r_m1_w_1_t*six_r_w_4_t_3)
         )
         # (six_r-m2_w_4) moment part 2 of reciprocal wrench 4
         six_r_m2_w_4 = (
-        six_r_size*(inv_six_r_w_1_t_28*six_r_w_1_t_32 + six_r_w_1_t_54*six_r_w_4_t +
-            six_r_w_1_t_72*six_r_w_4_t_2 - six_r_m2_w_1_t*six_r_w_4_t_3)
+        six_r_size*(inv_six_r_w_1_t_24*six_r_w_1_t_28 + six_r_w_1_t_50*six_r_w_4_t +
+            six_r_w_1_t_68*six_r_w_4_t_2 - six_r_m2_w_1_t*six_r_w_4_t_3)
         )
         # (six_r-w_5) force part of reciprocal wrench 5
-        six_r_w_5_t = inv_six_r_w_1_t_12*inv_six_r_w_1_t_28*six_r_w_1_t_15
+        six_r_w_5_t = inv_six_r_w_1_t_24*inv_six_r_w_1_t_8*six_r_w_1_t_11
         six_r_w_5_t_2 = (
-        inv_six_r_w_1_t_49*(inv_six_r_w_1_t_12*six_r_w_1_t_18 + six_r_w_1_t_33*six_r_w_5_t)
+        inv_six_r_w_1_t_45*(inv_six_r_w_1_t_8*six_r_w_1_t_14 + six_r_w_1_t_29*six_r_w_5_t)
         )
         six_r_w_5_t_3 = (
-        inv_six_r_w_1_t_67*(inv_six_r_w_1_t_12*six_r_w_1_t_22 + six_r_w_1_t_39*six_r_w_5_t -
-            six_r_w_1_t_55*six_r_w_5_t_2)
+        inv_six_r_w_1_t_63*(inv_six_r_w_1_t_8*six_r_w_1_t_18 + six_r_w_1_t_35*six_r_w_5_t -
+            six_r_w_1_t_51*six_r_w_5_t_2)
         )
         six_r_w_5_t_4 = (
-        inv_six_r_w_1_t_79*(inv_six_r_w_1_t_12*six_r_w_1_t_25 + six_r_w_1_t_61*six_r_w_5_t_2 +
-            six_r_w_1_t_73*six_r_w_5_t_3 - six_r_w_1_t_44*six_r_w_5_t)
+        inv_six_r_w_1_t_75*(inv_six_r_w_1_t_8*six_r_w_1_t_21 + six_r_w_1_t_57*six_r_w_5_t_2 +
+            six_r_w_1_t_69*six_r_w_5_t_3 - six_r_w_1_t_40*six_r_w_5_t)
         )
         six_r_w_5_t_5 = (
-        six_r_w_1_t_50*six_r_w_5_t_2 + six_r_w_1_t_68*six_r_w_5_t_3 - six_r_w_1_t_80*six_r_w_5_t_4
+        six_r_w_1_t_46*six_r_w_5_t_2 + six_r_w_1_t_64*six_r_w_5_t_3 - six_r_w_1_t_76*six_r_w_5_t_4
         )
         six_r_w_5_in_axes5_y = (
-        inv_six_r_w_1_t_12*six_r_w_1_t_13 + six_r_w_1_t_29*six_r_w_5_t +
-            six_r_w_1_t_51*six_r_w_5_t_2 + six_r_w_1_t_69*six_r_w_5_t_3 -
-            six_r_w_1_t_81*six_r_w_5_t_4
+        inv_six_r_w_1_t_8*six_r_w_1_t_9 + six_r_w_1_t_25*six_r_w_5_t +
+            six_r_w_1_t_47*six_r_w_5_t_2 + six_r_w_1_t_65*six_r_w_5_t_3 -
+            six_r_w_1_t_77*six_r_w_5_t_4
         )
         six_r_w_5_in_axes5_z = (
-        six_r_w_1_t_82*six_r_w_5_t_4 - six_r_w_1_t_30*six_r_w_5_t - six_r_w_1_t_52*six_r_w_5_t_2 -
-            six_r_w_1_t_70*six_r_w_5_t_3
+        six_r_w_1_t_78*six_r_w_5_t_4 - six_r_w_1_t_26*six_r_w_5_t - six_r_w_1_t_48*six_r_w_5_t_2 -
+            six_r_w_1_t_66*six_r_w_5_t_3
         )
         # (six_r-m1_w_5) moment part 1 of reciprocal wrench 5
         six_r_m1_w_5_t = (
-        six_r_size*(six_r_w_1_t_31*six_r_w_5_t + six_r_w_1_t_53*six_r_w_5_t_2 +
-            six_r_w_1_t_71*six_r_w_5_t_3 - six_r_m1_w_1_t*six_r_w_5_t_4)
+        six_r_size*(six_r_w_1_t_27*six_r_w_5_t + six_r_w_1_t_49*six_r_w_5_t_2 +
+            six_r_w_1_t_67*six_r_w_5_t_3 - six_r_m1_w_1_t*six_r_w_5_t_4)
         )
         # (six_r-m2_w_5) moment part 2 of reciprocal wrench 5
         six_r_m2_w_5_t = (
-        six_r_size*(six_r_w_1_t_32*six_r_w_5_t + six_r_w_1_t_54*six_r_w_5_t_2 +
-            six_r_w_1_t_72*six_r_w_5_t_3 - inv_six_r_w_1_t_12*six_r_w_1_t_14 -
+        six_r_size*(six_r_w_1_t_28*six_r_w_5_t + six_r_w_1_t_50*six_r_w_5_t_2 +
+            six_r_w_1_t_68*six_r_w_5_t_3 - inv_six_r_w_1_t_8*six_r_w_1_t_10 -
             six_r_m2_w_1_t*six_r_w_5_t_4)
         )
         # (six_r-o_1) moment part of reciprocal wrench 1
@@ -3048,47 +3022,71 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-eta_1) rate at which the joints turn along moment direction 1
         six_r_eta_1 = omega_x*six_r_n_m1_x + omega_y*six_r_n_m1_y + omega_z*six_r_n_m1_z
+        six_r_omega_in_axes5_x = (
+        axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z
+        )
+        six_r_omega_in_axes5_y = (
+        axis_y_six_r_axes5_x*omega_x + axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z
+        )
+        six_r_eta_1_2 = (
+        six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
+            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_x
+        )
         # (six_r-eta_2) rate at which the joints turn along moment direction 2
         six_r_eta_2 = omega_x*six_r_n_m2_x + omega_y*six_r_n_m2_y + omega_z*six_r_n_m2_z
+        six_r_omega_in_axes5_z = (
+        axis_z_six_r_axes5_x*omega_x + axis_z_six_r_axes5_y*omega_y + axis_z_six_r_axes5_z*omega_z
+        )
+        six_r_eta_2_t = (
+        six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
+            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_z
+        )
         # (six_r-qd_1) rate of joint 1
         six_r_qd_1_t = six_r_eta_1*six_r_size
         six_r_qd_1_t_2 = six_r_eta_2*six_r_size
-        six_r_qd_1_t_3 = (
-        inv_six_r_w_1_t_79*(six_r_S_dot_in_axes5_x*six_r_w_1_t_80 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_82 + six_r_m1_w_1_t*six_r_qd_1_t +
-            six_r_m2_w_1_t*six_r_qd_1_t_2 - six_r_S_dot_in_axes5_y*six_r_w_1_t_81)
+        six_r_qd_1_t_3 = six_r_S_dot_in_axes5_x*six_r_w_1_t_46
+        six_r_qd_1_t_4 = six_r_S_dot_in_axes5_y*six_r_w_1_t_47
+        six_r_qd_1_t_5 = six_r_S_dot_in_axes5_z*six_r_w_1_t_48
+        six_r_qd_1_t_6 = six_r_S_dot_in_axes5_x*six_r_w_1_t_64
+        six_r_qd_1_t_7 = six_r_S_dot_in_axes5_y*six_r_w_1_t_65
+        six_r_qd_1_t_8 = six_r_S_dot_in_axes5_z*six_r_w_1_t_66
+        six_r_qd_1_t_9 = six_r_S_dot_in_axes5_x*six_r_w_1_t_76
+        six_r_qd_1_t_10 = six_r_S_dot_in_axes5_y*six_r_w_1_t_77
+        six_r_qd_1_t_11 = six_r_S_dot_in_axes5_z*six_r_w_1_t_78
+        six_r_qd_1_t_12 = (
+        inv_six_r_w_1_t_75*(six_r_qd_1_t_11 + six_r_qd_1_t_9 + six_r_m1_w_1_t*six_r_qd_1_t +
+            six_r_m2_w_1_t*six_r_qd_1_t_2 - six_r_qd_1_t_10)
         )
-        six_r_qd_1_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_x*six_r_w_1_t_68 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_70 + six_r_qd_1_t*six_r_w_1_t_71 +
-            six_r_qd_1_t_2*six_r_w_1_t_72 - six_r_S_dot_in_axes5_y*six_r_w_1_t_69 -
-            six_r_qd_1_t_3*six_r_w_1_t_73)
+        six_r_qd_1_t_13 = (
+        inv_six_r_w_1_t_63*(six_r_qd_1_t_6 + six_r_qd_1_t_8 + six_r_qd_1_t*six_r_w_1_t_67 +
+            six_r_qd_1_t_2*six_r_w_1_t_68 - six_r_qd_1_t_7 - six_r_qd_1_t_12*six_r_w_1_t_69)
         )
-        six_r_qd_1_t_5 = (
-        inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 + six_r_qd_1_t_3*six_r_w_1_t_61
-            + six_r_qd_1_t_4*six_r_w_1_t_55 - six_r_S_dot_in_axes5_x*six_r_w_1_t_50 -
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_52 - six_r_qd_1_t*six_r_w_1_t_53 -
-            six_r_qd_1_t_2*six_r_w_1_t_54)
+        six_r_qd_1_t_14 = (
+        inv_six_r_w_1_t_45*(six_r_qd_1_t_4 + six_r_qd_1_t_12*six_r_w_1_t_57 +
+            six_r_qd_1_t_13*six_r_w_1_t_51 - six_r_qd_1_t_3 - six_r_qd_1_t_5 -
+            six_r_qd_1_t*six_r_w_1_t_49 - six_r_qd_1_t_2*six_r_w_1_t_50)
         )
         # (six_r-qd_4) rate of joint 4
+        six_r_qd_4_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_25
+        six_r_qd_4_t_2 = six_r_S_dot_in_axes5_z*six_r_w_1_t_26
         six_r_qd_4 = (
-        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_z*six_r_w_1_t_30 + six_r_qd_1_t*six_r_w_1_t_31 +
-            six_r_qd_1_t_2*six_r_w_1_t_32 + six_r_qd_1_t_3*six_r_w_1_t_44 +
-            six_r_qd_1_t_4*six_r_w_1_t_39 - six_r_S_dot_in_axes5_y*six_r_w_1_t_29 -
-            six_r_qd_1_t_5*six_r_w_1_t_33)
+        inv_six_r_w_1_t_24*(six_r_qd_4_t_2 + six_r_qd_1_t*six_r_w_1_t_27 +
+            six_r_qd_1_t_12*six_r_w_1_t_40 + six_r_qd_1_t_13*six_r_w_1_t_35 +
+            six_r_qd_1_t_2*six_r_w_1_t_28 - six_r_qd_4_t - six_r_qd_1_t_14*six_r_w_1_t_29)
         )
         # (six_r-qd_5) rate of joint 5
+        six_r_qd_5_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_9
         six_r_qd_5 = (
-        inv_six_r_w_1_t_12*(six_r_S_dot_in_axes5_y*six_r_w_1_t_13 + six_r_qd_1_t_2*six_r_w_1_t_14
-            + six_r_qd_1_t_3*six_r_w_1_t_25 + six_r_qd_1_t_5*six_r_w_1_t_18 -
-            six_r_qd_1_t_4*six_r_w_1_t_22 - six_r_qd_4*six_r_w_1_t_15)
+        inv_six_r_w_1_t_8*(six_r_qd_5_t + six_r_qd_1_t_12*six_r_w_1_t_21 +
+            six_r_qd_1_t_14*six_r_w_1_t_14 + six_r_qd_1_t_2*six_r_w_1_t_10 -
+            six_r_qd_1_t_13*six_r_w_1_t_18 - six_r_qd_4*six_r_w_1_t_11)
         )
         # (six_r-omega_1) angular velocity of link 1
-        six_r_omega_1_in_axes2_x = -six_r_c_2*six_r_qd_1_t_5
-        six_r_omega_1_in_axes2_y = six_r_qd_1_t_5*six_r_s_2
-        six_r_omega_1_t = six_r_e_1_in_axes5_x*six_r_qd_1_t_5
-        six_r_omega_1_t_2 = six_r_e_1_in_axes5_y*six_r_qd_1_t_5
-        six_r_omega_1_t_3 = six_r_e_1_in_axes5_z*six_r_qd_1_t_5
+        six_r_omega_1_in_axes2_x = -six_r_c_2*six_r_qd_1_t_14
+        six_r_omega_1_in_axes2_y = six_r_qd_1_t_14*six_r_s_2
+        six_r_omega_1_t = six_r_e_1_in_axes5_x*six_r_qd_1_t_14
+        six_r_omega_1_t_2 = six_r_e_1_in_axes5_y*six_r_qd_1_t_14
+        six_r_omega_1_t_3 = six_r_e_1_in_axes5_z*six_r_qd_1_t_14
         # (six_r-W_1) centripetal tensor of link 1
         six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2
         six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3
@@ -3100,17 +3098,17 @@ def _run_dynamics(m, X, V, q):
         six_r_omega_2_in_axes3_y = (
         six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
         )
-        six_r_omega_2_in_axes5_x = six_r_e_2_in_axes5_x*six_r_qd_1_t_4 - six_r_omega_1_t
-        six_r_omega_2_in_axes5_y = six_r_e_2_in_axes5_y*six_r_qd_1_t_4 - six_r_omega_1_t_2
-        six_r_omega_2_in_axes5_z = six_r_e_2_in_axes5_z*six_r_qd_1_t_4 - six_r_omega_1_t_3
+        six_r_omega_2_in_axes5_x = six_r_e_2_in_axes5_x*six_r_qd_1_t_13 - six_r_omega_1_t
+        six_r_omega_2_in_axes5_y = six_r_e_2_in_axes5_y*six_r_qd_1_t_13 - six_r_omega_1_t_2
+        six_r_omega_2_in_axes5_z = six_r_e_2_in_axes5_z*six_r_qd_1_t_13 - six_r_omega_1_t_3
         # (six_r-W_2) centripetal tensor of link 2
-        six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4
+        six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_13
         six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y
         six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y
         six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z
         six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z
         # (six_r-omega_3) angular velocity of link 3
-        six_r_omega_3_in_axes3_z = six_r_qd_1_t_3 + six_r_qd_1_t_4
+        six_r_omega_3_in_axes3_z = six_r_qd_1_t_12 + six_r_qd_1_t_13
         six_r_omega_3_in_axes4_x = (
         six_r_h_4_t*six_r_omega_3_in_axes3_z - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x
         )
@@ -3163,7 +3161,7 @@ def _run_dynamics(m, X, V, q):
             axis_z_six_r_axes5_z*six_r_u_1_z
         )
         # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4
+        six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_13
         six_r_zeta_2_in_axes3_x = (
         six_r_W_2_in_axes2_yz*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y
         )
@@ -3179,8 +3177,8 @@ def _run_dynamics(m, X, V, q):
         -six_r_J_5_t*six_r_zeta_2_in_axes3_y - six_r_e_4_in_axes5_x*six_r_zeta_2_t
         )
         # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3
-        six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3
+        six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_12
+        six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_12
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
         six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x
         six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t
@@ -3273,25 +3271,12 @@ def _run_dynamics(m, X, V, q):
         six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y
         six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z
         # (six_r-nd_m1) rate of moment direction 1
-        six_r_omega_in_axes5_x = (
-        axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z
-        )
-        six_r_omega_in_axes5_y = (
-        axis_y_six_r_axes5_x*omega_x + axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z
-        )
-        six_r_omega_in_axes5_z = (
-        axis_z_six_r_axes5_x*omega_x + axis_z_six_r_axes5_y*omega_y + axis_z_six_r_axes5_z*omega_z
-        )
         six_r_nd_m1_t = (
         six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_z -
             six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_x
         )
         six_r_nd_m1_in_axes5_x = -six_r_nd_m1_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x
-        six_r_nd_m1_in_axes5_y = (
-        six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
-            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_z -
-            six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y
-        )
+        six_r_nd_m1_in_axes5_y = six_r_eta_2_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y
         # (six_r-nu_1) bias of the angular acceleration along moment direction 1
         six_r_nu_1_t = six_r_end_p1_in_axes5_y*six_r_omega_4_in_axes5_y
         six_r_nu_1_t_2 = (
@@ -3307,11 +3292,7 @@ def _run_dynamics(m, X, V, q):
         )
         six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6
         # (six_r-nd_m2) rate of moment direction 2
-        six_r_nd_m2_in_axes5_y = (
-        six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
-            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_x -
-            six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y
-        )
+        six_r_nd_m2_in_axes5_y = six_r_eta_1_2 - six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y
         six_r_nd_m2_in_axes5_z = six_r_nd_m1_t - six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z
         # (six_r-nu_2) bias of the angular acceleration along moment direction 2
         six_r_nu_2_t = (
@@ -3327,27 +3308,27 @@ def _run_dynamics(m, X, V, q):
         six_r_qdd_1_o_t = six_r_nu_1*six_r_size
         six_r_qdd_1_o_t_2 = six_r_nu_2*six_r_size
         six_r_qdd_1_o_t_3 = (
-        inv_six_r_w_1_t_79*(six_r_m1_w_1_t*six_r_qdd_1_o_t + six_r_m2_w_1_t*six_r_qdd_1_o_t_2 +
-            six_r_rel_o_in_axes5_x*six_r_w_1_t_80 + six_r_rel_o_in_axes5_z*six_r_w_1_t_82 -
-            six_r_rel_o_in_axes5_y*six_r_w_1_t_81)
+        inv_six_r_w_1_t_75*(six_r_m1_w_1_t*six_r_qdd_1_o_t + six_r_m2_w_1_t*six_r_qdd_1_o_t_2 +
+            six_r_rel_o_in_axes5_x*six_r_w_1_t_76 + six_r_rel_o_in_axes5_z*six_r_w_1_t_78 -
+            six_r_rel_o_in_axes5_y*six_r_w_1_t_77)
         )
         six_r_qdd_1_o_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_qdd_1_o_t*six_r_w_1_t_71 + six_r_qdd_1_o_t_2*six_r_w_1_t_72 +
-            six_r_rel_o_in_axes5_x*six_r_w_1_t_68 + six_r_rel_o_in_axes5_z*six_r_w_1_t_70 -
-            six_r_qdd_1_o_t_3*six_r_w_1_t_73 - six_r_rel_o_in_axes5_y*six_r_w_1_t_69)
+        inv_six_r_w_1_t_63*(six_r_qdd_1_o_t*six_r_w_1_t_67 + six_r_qdd_1_o_t_2*six_r_w_1_t_68 +
+            six_r_rel_o_in_axes5_x*six_r_w_1_t_64 + six_r_rel_o_in_axes5_z*six_r_w_1_t_66 -
+            six_r_qdd_1_o_t_3*six_r_w_1_t_69 - six_r_rel_o_in_axes5_y*six_r_w_1_t_65)
         )
         six_r_qdd_1_o_t_5 = (
-        inv_six_r_w_1_t_49*(six_r_qdd_1_o_t_3*six_r_w_1_t_61 + six_r_qdd_1_o_t_4*six_r_w_1_t_55 +
-            six_r_rel_o_in_axes5_y*six_r_w_1_t_51 - six_r_qdd_1_o_t*six_r_w_1_t_53 -
-            six_r_qdd_1_o_t_2*six_r_w_1_t_54 - six_r_rel_o_in_axes5_x*six_r_w_1_t_50 -
-            six_r_rel_o_in_axes5_z*six_r_w_1_t_52)
+        inv_six_r_w_1_t_45*(six_r_qdd_1_o_t_3*six_r_w_1_t_57 + six_r_qdd_1_o_t_4*six_r_w_1_t_51 +
+            six_r_rel_o_in_axes5_y*six_r_w_1_t_47 - six_r_qdd_1_o_t*six_r_w_1_t_49 -
+            six_r_qdd_1_o_t_2*six_r_w_1_t_50 - six_r_rel_o_in_axes5_x*six_r_w_1_t_46 -
+            six_r_rel_o_in_axes5_z*six_r_w_1_t_48)
         )
         # (six_r-qdd_4_o) remainder of: acceleration of joint 4
         six_r_qdd_4_o = (
-        inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*six_r_w_1_t_31 + six_r_qdd_1_o_t_2*six_r_w_1_t_32 +
-            six_r_qdd_1_o_t_3*six_r_w_1_t_44 + six_r_qdd_1_o_t_4*six_r_w_1_t_39 +
-            six_r_rel_o_in_axes5_z*six_r_w_1_t_30 - six_r_qdd_1_o_t_5*six_r_w_1_t_33 -
-            six_r_rel_o_in_axes5_y*six_r_w_1_t_29)
+        inv_six_r_w_1_t_24*(six_r_qdd_1_o_t*six_r_w_1_t_27 + six_r_qdd_1_o_t_2*six_r_w_1_t_28 +
+            six_r_qdd_1_o_t_3*six_r_w_1_t_40 + six_r_qdd_1_o_t_4*six_r_w_1_t_35 +
+            six_r_rel_o_in_axes5_z*six_r_w_1_t_26 - six_r_qdd_1_o_t_5*six_r_w_1_t_29 -
+            six_r_rel_o_in_axes5_y*six_r_w_1_t_25)
         )
         # (six_r-alpha_1_o) remainder of: angular acceleration of link 1
         six_r_alpha_1_o_t = six_r_c_2*six_r_qdd_1_o_t_5
@@ -3458,10 +3439,10 @@ def _run_dynamics(m, X, V, q):
             six_r_J_5_t*six_r_alpha_4_o_in_axes4_z
         )
         six_r_alpha_5_o_in_axes5_z = (
-        six_r_alpha_4_o_in_axes4_y + inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*six_r_w_1_t_14 +
-            six_r_qdd_1_o_t_3*six_r_w_1_t_25 + six_r_qdd_1_o_t_5*six_r_w_1_t_18 +
-            six_r_rel_o_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_o_t_4*six_r_w_1_t_22 -
-            six_r_qdd_4_o*six_r_w_1_t_15)
+        six_r_alpha_4_o_in_axes4_y + inv_six_r_w_1_t_8*(six_r_qdd_1_o_t_2*six_r_w_1_t_10 +
+            six_r_qdd_1_o_t_3*six_r_w_1_t_21 + six_r_qdd_1_o_t_5*six_r_w_1_t_14 +
+            six_r_rel_o_in_axes5_y*six_r_w_1_t_9 - six_r_qdd_1_o_t_4*six_r_w_1_t_18 -
+            six_r_qdd_4_o*six_r_w_1_t_11)
         )
         # (six_r-B_5_o) remainder of the acceleration tensor of link 5
         six_r_B_5_o_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_o_in_axes5_z
@@ -3472,7 +3453,7 @@ def _run_dynamics(m, X, V, q):
         six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x
         # (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3
         six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y
-        six_r_a_o_3_o_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4
+        six_r_a_o_3_o_t_2 = six_r_qd_1_t_13*six_r_qd_1_t_13
         six_r_a_o_3_o_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_o_t + six_r_a_o_3_o_t_2)
         six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*six_r_joint3_offset_x
         six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*six_r_joint3_offset_x
@@ -3490,13 +3471,14 @@ def _run_dynamics(m, X, V, q):
         six_r_a_o_4_o_in_axes3_z = (
         six_r_a_o_3_o_in_axes2_z + six_r_B_3_o_in_axes3_zy*six_r_joint4_offset_x
         )
-        # (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        # (six_r-acc_3) acceleration of the reference point of link 3, less gravity
         six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1
         six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1
         six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_z + six_r_g_in_axes1_x*six_r_s_2
         six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_x - six_r_g_in_axes1_z*six_r_s_2
         six_r_g_in_axes3_x = six_r_g_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_g_in_axes2_y
         six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_x + six_r_g_in_axes2_y*six_r_s_3
+        # (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - six_r_g_in_axes3_x
         six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - six_r_g_in_axes3_y
         six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - six_r_g_in_axes1_y
@@ -3517,14 +3499,21 @@ def _run_dynamics(m, X, V, q):
             six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
             six_r_f_3_o_t)
         )
+        # (six_r-acc_4) acceleration of the reference point of link 4, less gravity
+        six_r_g_in_axes4_x = (
+        six_r_g_in_axes1_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_g_in_axes3_x
+        )
+        six_r_g_in_axes4_y = (
+        six_r_e_2_in_axes5_z*six_r_g_in_axes1_y + six_r_g_in_axes3_x*six_r_h_4_t
+        )
         # (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
         six_r_acc_4_o_in_axes4_x = (
-        six_r_a_o_4_o_in_axes3_z*six_r_h_4_t + six_r_e_2_in_axes5_z*six_r_g_in_axes3_x -
-            six_r_a_o_4_o_in_axes3_x*six_r_e_2_in_axes5_z - six_r_g_in_axes1_y*six_r_h_4_t
+        six_r_a_o_4_o_in_axes3_z*six_r_h_4_t - six_r_g_in_axes4_x -
+            six_r_a_o_4_o_in_axes3_x*six_r_e_2_in_axes5_z
         )
         six_r_acc_4_o_in_axes4_y = (
         six_r_a_o_4_o_in_axes3_x*six_r_h_4_t + six_r_a_o_4_o_in_axes3_z*six_r_e_2_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_g_in_axes1_y - six_r_g_in_axes3_x*six_r_h_4_t
+            six_r_g_in_axes4_y
         )
         six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - six_r_g_in_axes3_y
         # (six_r-f_4_o) remainder of: inertia force of link 4 less its weight
@@ -3554,19 +3543,23 @@ def _run_dynamics(m, X, V, q):
         six_r_f_4_o_in_axes3_z = (
         six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y + six_r_f_4_o_in_axes4_x*six_r_h_4_t
         )
-        # (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity
-        six_r_acc_5_o_in_axes5_x = (
-        six_r_u_1_in_axes5_x - axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y -
+        # (six_r-acc_5) acceleration of the reference point of link 5, less gravity
+        six_r_g_in_axes5_x = (
+        axis_x_six_r_axes5_x*gravity_x + axis_x_six_r_axes5_y*gravity_y +
             axis_x_six_r_axes5_z*gravity_z
         )
-        six_r_acc_5_o_in_axes5_y = (
-        six_r_u_1_in_axes5_y - axis_y_six_r_axes5_x*gravity_x - axis_y_six_r_axes5_y*gravity_y -
+        six_r_g_in_axes5_y = (
+        axis_y_six_r_axes5_x*gravity_x + axis_y_six_r_axes5_y*gravity_y +
             axis_y_six_r_axes5_z*gravity_z
         )
-        six_r_acc_5_o_in_axes5_z = (
-        six_r_u_1_in_axes5_z - axis_z_six_r_axes5_x*gravity_x - axis_z_six_r_axes5_y*gravity_y -
+        six_r_g_in_axes5_z = (
+        axis_z_six_r_axes5_x*gravity_x + axis_z_six_r_axes5_y*gravity_y +
             axis_z_six_r_axes5_z*gravity_z
         )
+        # (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity
+        six_r_acc_5_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_g_in_axes5_x
+        six_r_acc_5_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_g_in_axes5_y
+        six_r_acc_5_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_g_in_axes5_z
         # (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning about its reference point
         six_r_d_phi_5_in_axes5_xx = (
         six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
@@ -3741,35 +3734,35 @@ def _run_dynamics(m, X, V, q):
             six_r_J_5_in_spec5_zz*six_r_o_5_t
         )
         # (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
-        six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*six_r_J_5_in_spec5_zz
+        six_r_d_Gamma_5_t = inv_six_r_w_1_t_8*six_r_J_5_in_spec5_zz
         six_r_d_Gamma_5_t_2 = (
-        inv_six_r_w_1_t_28*(six_r_J_5_in_axes4_yz - six_r_d_Gamma_5_t*six_r_w_1_t_15)
+        inv_six_r_w_1_t_24*(six_r_J_5_in_axes4_yz - six_r_d_Gamma_5_t*six_r_w_1_t_11)
         )
         six_r_d_Gamma_5_t_3 = (
-        inv_six_r_w_1_t_49*(six_r_D_1_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_33 -
-            six_r_d_Gamma_5_t*six_r_w_1_t_18)
+        inv_six_r_w_1_t_45*(six_r_D_1_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_29 -
+            six_r_d_Gamma_5_t*six_r_w_1_t_14)
         )
         six_r_d_Gamma_5_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_D_3_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_39 -
-            six_r_d_Gamma_5_t*six_r_w_1_t_22 - six_r_d_Gamma_5_t_3*six_r_w_1_t_55)
+        inv_six_r_w_1_t_63*(six_r_D_3_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_35 -
+            six_r_d_Gamma_5_t*six_r_w_1_t_18 - six_r_d_Gamma_5_t_3*six_r_w_1_t_51)
         )
         six_r_d_Gamma_5_t_5 = (
-        inv_six_r_w_1_t_79*(six_r_D_3_5 + six_r_d_Gamma_5_t*six_r_w_1_t_25 +
-            six_r_d_Gamma_5_t_2*six_r_w_1_t_44 - six_r_d_Gamma_5_t_3*six_r_w_1_t_61 -
-            six_r_d_Gamma_5_t_4*six_r_w_1_t_73)
+        inv_six_r_w_1_t_75*(six_r_D_3_5 + six_r_d_Gamma_5_t*six_r_w_1_t_21 +
+            six_r_d_Gamma_5_t_2*six_r_w_1_t_40 - six_r_d_Gamma_5_t_3*six_r_w_1_t_57 -
+            six_r_d_Gamma_5_t_4*six_r_w_1_t_69)
         )
         six_r_d_Gamma_5_in_axes5_z = (
-        six_r_d_Gamma_5_t_2*six_r_w_1_t_30 + six_r_d_Gamma_5_t_3*six_r_w_1_t_52 +
-            six_r_d_Gamma_5_t_4*six_r_w_1_t_70 + six_r_d_Gamma_5_t_5*six_r_w_1_t_82
+        six_r_d_Gamma_5_t_2*six_r_w_1_t_26 + six_r_d_Gamma_5_t_3*six_r_w_1_t_48 +
+            six_r_d_Gamma_5_t_4*six_r_w_1_t_66 + six_r_d_Gamma_5_t_5*six_r_w_1_t_78
         )
         six_r_d_Gamma_5_in_axes5_x = (
-        six_r_d_Gamma_5_t_3*six_r_w_1_t_50 + six_r_d_Gamma_5_t_4*six_r_w_1_t_68 +
-            six_r_d_Gamma_5_t_5*six_r_w_1_t_80 - six_r_h_5_in_spec5_y
+        six_r_d_Gamma_5_t_3*six_r_w_1_t_46 + six_r_d_Gamma_5_t_4*six_r_w_1_t_64 +
+            six_r_d_Gamma_5_t_5*six_r_w_1_t_76 - six_r_h_5_in_spec5_y
         )
         six_r_d_Gamma_5_in_axes5_y = (
-        six_r_h_5_in_spec5_x + six_r_d_Gamma_5_t*six_r_w_1_t_13 -
-            six_r_d_Gamma_5_t_2*six_r_w_1_t_29 - six_r_d_Gamma_5_t_3*six_r_w_1_t_51 -
-            six_r_d_Gamma_5_t_4*six_r_w_1_t_69 - six_r_d_Gamma_5_t_5*six_r_w_1_t_81
+        six_r_h_5_in_spec5_x + six_r_d_Gamma_5_t*six_r_w_1_t_9 -
+            six_r_d_Gamma_5_t_2*six_r_w_1_t_25 - six_r_d_Gamma_5_t_3*six_r_w_1_t_47 -
+            six_r_d_Gamma_5_t_4*six_r_w_1_t_65 - six_r_d_Gamma_5_t_5*six_r_w_1_t_77
         )
         # (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their reference points
         six_r_mu_4_o_in_axes4_x = (
@@ -3828,36 +3821,39 @@ def _run_dynamics(m, X, V, q):
             six_r_L_c_4_2_in_axes1_z*six_r_o_1_t
         )
         # (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*six_r_J_5_in_axes4_yz
-        six_r_d_Gamma_4_t_2 = (
-        inv_six_r_w_1_t_28*(six_r_Jc_4_in_axes4_zz - six_r_d_Gamma_4_t*six_r_w_1_t_15)
+        six_r_d_Gamma_4_t = (
+        six_r_J_5_t*six_r_h_5_in_spec5_x + six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y
         )
+        six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_8*six_r_J_5_in_axes4_yz
         six_r_d_Gamma_4_t_3 = (
-        inv_six_r_w_1_t_49*(six_r_L_c_4_2_in_axes1_z + six_r_d_Gamma_4_t_2*six_r_w_1_t_33 -
-            six_r_d_Gamma_4_t*six_r_w_1_t_18)
+        inv_six_r_w_1_t_24*(six_r_Jc_4_in_axes4_zz - six_r_d_Gamma_4_t_2*six_r_w_1_t_11)
         )
         six_r_d_Gamma_4_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_L_c_4_2_in_axes2_z + six_r_d_Gamma_4_t_2*six_r_w_1_t_39 -
-            six_r_d_Gamma_4_t*six_r_w_1_t_22 - six_r_d_Gamma_4_t_3*six_r_w_1_t_55)
+        inv_six_r_w_1_t_45*(six_r_L_c_4_2_in_axes1_z + six_r_d_Gamma_4_t_3*six_r_w_1_t_29 -
+            six_r_d_Gamma_4_t_2*six_r_w_1_t_14)
         )
         six_r_d_Gamma_4_t_5 = (
-        inv_six_r_w_1_t_79*(six_r_L_c_4_3_in_axes3_z + six_r_d_Gamma_4_t*six_r_w_1_t_25 +
-            six_r_d_Gamma_4_t_2*six_r_w_1_t_44 - six_r_d_Gamma_4_t_3*six_r_w_1_t_61 -
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_73)
+        inv_six_r_w_1_t_63*(six_r_L_c_4_2_in_axes2_z + six_r_d_Gamma_4_t_3*six_r_w_1_t_35 -
+            six_r_d_Gamma_4_t_2*six_r_w_1_t_18 - six_r_d_Gamma_4_t_4*six_r_w_1_t_51)
+        )
+        six_r_d_Gamma_4_t_6 = (
+        inv_six_r_w_1_t_75*(six_r_L_c_4_3_in_axes3_z + six_r_d_Gamma_4_t_2*six_r_w_1_t_21 +
+            six_r_d_Gamma_4_t_3*six_r_w_1_t_40 - six_r_d_Gamma_4_t_4*six_r_w_1_t_57 -
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_69)
         )
         six_r_d_Gamma_4_in_axes5_x = (
-        six_r_d_Gamma_4_t_3*six_r_w_1_t_50 + six_r_d_Gamma_4_t_4*six_r_w_1_t_68 +
-            six_r_d_Gamma_4_t_5*six_r_w_1_t_80 - six_r_J_5_t*six_r_h_5_in_spec5_z
+        six_r_d_Gamma_4_t_4*six_r_w_1_t_46 + six_r_d_Gamma_4_t_5*six_r_w_1_t_64 +
+            six_r_d_Gamma_4_t_6*six_r_w_1_t_76 - six_r_J_5_t*six_r_h_5_in_spec5_z
         )
         six_r_d_Gamma_4_in_axes5_y = (
-        six_r_d_Gamma_4_t*six_r_w_1_t_13 - six_r_d_Gamma_4_t_2*six_r_w_1_t_29 -
-            six_r_d_Gamma_4_t_3*six_r_w_1_t_51 - six_r_d_Gamma_4_t_4*six_r_w_1_t_69 -
-            six_r_d_Gamma_4_t_5*six_r_w_1_t_81 - six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z
+        six_r_d_Gamma_4_t_2*six_r_w_1_t_9 - six_r_d_Gamma_4_t_3*six_r_w_1_t_25 -
+            six_r_d_Gamma_4_t_4*six_r_w_1_t_47 - six_r_d_Gamma_4_t_5*six_r_w_1_t_65 -
+            six_r_d_Gamma_4_t_6*six_r_w_1_t_77 - six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z
         )
         six_r_d_Gamma_4_in_axes5_z = (
-        six_r_J_5_t*six_r_h_5_in_spec5_x + six_r_d_Gamma_4_t_2*six_r_w_1_t_30 +
-            six_r_d_Gamma_4_t_3*six_r_w_1_t_52 + six_r_d_Gamma_4_t_4*six_r_w_1_t_70 +
-            six_r_d_Gamma_4_t_5*six_r_w_1_t_82 + six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y
+        six_r_d_Gamma_4_t + six_r_d_Gamma_4_t_3*six_r_w_1_t_26 +
+            six_r_d_Gamma_4_t_4*six_r_w_1_t_48 + six_r_d_Gamma_4_t_5*six_r_w_1_t_66 +
+            six_r_d_Gamma_4_t_6*six_r_w_1_t_78
         )
         # (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         six_r_mu_3_o_in_axes3_x = (
@@ -3932,65 +3928,71 @@ def _run_dynamics(m, X, V, q):
         six_r_d_Gamma_3_t_3 = (
         six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_y - six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_x
         )
-        six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*six_r_D_3_5
-        six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_15
-        six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(six_r_L_c_4_3_in_axes3_z - six_r_d_Gamma_3_t_5)
-        six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18
+        six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_8*six_r_D_3_5
+        six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_11
+        six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_24*(six_r_L_c_4_3_in_axes3_z - six_r_d_Gamma_3_t_5)
+        six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_14
         six_r_d_Gamma_3_t_8 = (
-        inv_six_r_w_1_t_49*(six_r_L_c_3_2_in_axes1_z + six_r_d_Gamma_3_t_6*six_r_w_1_t_33 -
+        inv_six_r_w_1_t_45*(six_r_L_c_3_2_in_axes1_z + six_r_d_Gamma_3_t_6*six_r_w_1_t_29 -
             six_r_d_Gamma_3_t_7)
         )
-        six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_22
+        six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18
         six_r_d_Gamma_3_t_10 = (
-        inv_six_r_w_1_t_67*(six_r_L_c_3_2_in_axes2_z + six_r_d_Gamma_3_t_6*six_r_w_1_t_39 -
-            six_r_d_Gamma_3_t_9 - six_r_d_Gamma_3_t_8*six_r_w_1_t_55)
+        inv_six_r_w_1_t_63*(six_r_L_c_3_2_in_axes2_z + six_r_d_Gamma_3_t_6*six_r_w_1_t_35 -
+            six_r_d_Gamma_3_t_9 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51)
         )
-        six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25
+        six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_21
         six_r_d_Gamma_3_t_12 = (
-        inv_six_r_w_1_t_79*(six_r_Jc_3_in_axes3_zz + six_r_d_Gamma_3_t_11 +
-            six_r_d_Gamma_3_t_6*six_r_w_1_t_44 - six_r_d_Gamma_3_t_10*six_r_w_1_t_73 -
-            six_r_d_Gamma_3_t_8*six_r_w_1_t_61)
+        inv_six_r_w_1_t_75*(six_r_Jc_3_in_axes3_zz + six_r_d_Gamma_3_t_11 +
+            six_r_d_Gamma_3_t_6*six_r_w_1_t_40 - six_r_d_Gamma_3_t_10*six_r_w_1_t_69 -
+            six_r_d_Gamma_3_t_8*six_r_w_1_t_57)
         )
-        six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_13
+        six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_9
         six_r_d_Gamma_3_in_axes5_x = (
-        six_r_d_Gamma_3_t + six_r_d_Gamma_3_t_10*six_r_w_1_t_68 +
-            six_r_d_Gamma_3_t_12*six_r_w_1_t_80 + six_r_d_Gamma_3_t_8*six_r_w_1_t_50
+        six_r_d_Gamma_3_t + six_r_d_Gamma_3_t_10*six_r_w_1_t_64 +
+            six_r_d_Gamma_3_t_12*six_r_w_1_t_76 + six_r_d_Gamma_3_t_8*six_r_w_1_t_46
         )
         six_r_d_Gamma_3_in_axes5_y = (
-        six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 - six_r_d_Gamma_3_t_10*six_r_w_1_t_69 -
-            six_r_d_Gamma_3_t_12*six_r_w_1_t_81 - six_r_d_Gamma_3_t_6*six_r_w_1_t_29 -
-            six_r_d_Gamma_3_t_8*six_r_w_1_t_51
+        six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 - six_r_d_Gamma_3_t_10*six_r_w_1_t_65 -
+            six_r_d_Gamma_3_t_12*six_r_w_1_t_77 - six_r_d_Gamma_3_t_6*six_r_w_1_t_25 -
+            six_r_d_Gamma_3_t_8*six_r_w_1_t_47
         )
         six_r_d_Gamma_3_in_axes5_z = (
-        six_r_d_Gamma_3_t_3 + six_r_d_Gamma_3_t_10*six_r_w_1_t_70 +
-            six_r_d_Gamma_3_t_12*six_r_w_1_t_82 + six_r_d_Gamma_3_t_6*six_r_w_1_t_30 +
-            six_r_d_Gamma_3_t_8*six_r_w_1_t_52
+        six_r_d_Gamma_3_t_3 + six_r_d_Gamma_3_t_10*six_r_w_1_t_66 +
+            six_r_d_Gamma_3_t_12*six_r_w_1_t_78 + six_r_d_Gamma_3_t_6*six_r_w_1_t_26 +
+            six_r_d_Gamma_3_t_8*six_r_w_1_t_48
+        )
+        # (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        six_r_mu_2_t = (
+        six_r_g_in_axes1_y*six_r_h_2_in_spec2_y - six_r_g_in_axes2_y*six_r_h_2_in_spec2_z
+        )
+        six_r_mu_2_t_2 = (
+        six_r_g_in_axes2_x*six_r_h_2_in_spec2_z - six_r_g_in_axes1_y*six_r_h_2_in_spec2_x
+        )
+        six_r_mu_2_t_3 = (
+        six_r_g_in_axes2_y*six_r_h_2_in_spec2_x - six_r_g_in_axes2_x*six_r_h_2_in_spec2_y
         )
         # (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x
         six_r_mu_2_o_in_axes2_x = (
         six_r_B_2_o_in_axes2_yx*six_r_J_2_in_spec2_xz +
             six_r_B_2_o_in_axes2_zy*six_r_Sigma_2_in_axes2_yy +
-            six_r_J_2_in_spec2_yz*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
-            six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
+            six_r_J_2_in_spec2_yz*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) - six_r_mu_2_t -
             six_r_B_2_o_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t - six_r_g_in_axes1_y*six_r_h_2_in_spec2_y
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t
         )
         six_r_mu_2_o_in_axes2_y = (
         six_r_B_2_o_in_axes2_zy*six_r_J_2_in_spec2_xy +
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_in_axes2_y +
-            six_r_g_in_axes1_y*six_r_h_2_in_spec2_x -
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_in_axes2_y - six_r_mu_2_t_2 -
             six_r_B_2_o_in_axes2_xy*six_r_J_2_in_spec2_yz -
             six_r_B_2_o_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
-            six_r_J_2_in_spec2_xz*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_z
+            six_r_J_2_in_spec2_xz*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2)
         )
         six_r_mu_2_o_in_axes2_z = (
         six_r_B_2_o_in_axes2_yx*six_r_Sigma_2_in_axes2_xx + six_r_J_2_in_spec2_xy*(six_r_mu_2_o_t
-            - six_r_a_o_3_o_t) + six_r_J_2_in_spec2_yz*six_r_alpha_1_o_in_axes2_y +
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
-            six_r_B_2_o_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
-            six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t - six_r_g_in_axes2_y*six_r_h_2_in_spec2_x
+            - six_r_a_o_3_o_t) + six_r_J_2_in_spec2_yz*six_r_alpha_1_o_in_axes2_y - six_r_mu_2_t_3
+            - six_r_B_2_o_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
+            six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t
         )
         # (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         six_r_N_2_o_in_axes2_x = (
@@ -4025,39 +4027,40 @@ def _run_dynamics(m, X, V, q):
             six_r_Jc_2_in_axes1_yz*six_r_o_1_t
         )
         # (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(six_r_L_c_4_2_in_axes2_z - six_r_d_Gamma_3_t_5)
+        six_r_d_Gamma_2_t = inv_six_r_w_1_t_24*(six_r_L_c_4_2_in_axes2_z - six_r_d_Gamma_3_t_5)
         six_r_d_Gamma_2_t_2 = (
-        inv_six_r_w_1_t_49*(six_r_Jc_2_in_axes1_yz + six_r_d_Gamma_2_t*six_r_w_1_t_33 -
+        inv_six_r_w_1_t_45*(six_r_Jc_2_in_axes1_yz + six_r_d_Gamma_2_t*six_r_w_1_t_29 -
             six_r_d_Gamma_3_t_7)
         )
         six_r_d_Gamma_2_t_3 = (
-        inv_six_r_w_1_t_67*(six_r_Jc_2_in_axes2_zz + six_r_d_Gamma_2_t*six_r_w_1_t_39 -
-            six_r_d_Gamma_3_t_9 - six_r_d_Gamma_2_t_2*six_r_w_1_t_55)
+        inv_six_r_w_1_t_63*(six_r_Jc_2_in_axes2_zz + six_r_d_Gamma_2_t*six_r_w_1_t_35 -
+            six_r_d_Gamma_3_t_9 - six_r_d_Gamma_2_t_2*six_r_w_1_t_51)
         )
         six_r_d_Gamma_2_t_4 = (
-        inv_six_r_w_1_t_79*(six_r_L_c_3_2_in_axes2_z + six_r_d_Gamma_3_t_11 +
-            six_r_d_Gamma_2_t*six_r_w_1_t_44 - six_r_d_Gamma_2_t_2*six_r_w_1_t_61 -
-            six_r_d_Gamma_2_t_3*six_r_w_1_t_73)
+        inv_six_r_w_1_t_75*(six_r_L_c_3_2_in_axes2_z + six_r_d_Gamma_3_t_11 +
+            six_r_d_Gamma_2_t*six_r_w_1_t_40 - six_r_d_Gamma_2_t_2*six_r_w_1_t_57 -
+            six_r_d_Gamma_2_t_3*six_r_w_1_t_69)
         )
         six_r_d_Gamma_2_in_axes5_x = (
-        six_r_d_Gamma_3_t + six_r_d_Gamma_2_t_2*six_r_w_1_t_50 +
-            six_r_d_Gamma_2_t_3*six_r_w_1_t_68 + six_r_d_Gamma_2_t_4*six_r_w_1_t_80
+        six_r_d_Gamma_3_t + six_r_d_Gamma_2_t_2*six_r_w_1_t_46 +
+            six_r_d_Gamma_2_t_3*six_r_w_1_t_64 + six_r_d_Gamma_2_t_4*six_r_w_1_t_76
         )
         six_r_d_Gamma_2_in_axes5_y = (
-        six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 - six_r_d_Gamma_2_t*six_r_w_1_t_29 -
-            six_r_d_Gamma_2_t_2*six_r_w_1_t_51 - six_r_d_Gamma_2_t_3*six_r_w_1_t_69 -
-            six_r_d_Gamma_2_t_4*six_r_w_1_t_81
+        six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 - six_r_d_Gamma_2_t*six_r_w_1_t_25 -
+            six_r_d_Gamma_2_t_2*six_r_w_1_t_47 - six_r_d_Gamma_2_t_3*six_r_w_1_t_65 -
+            six_r_d_Gamma_2_t_4*six_r_w_1_t_77
         )
         six_r_d_Gamma_2_in_axes5_z = (
-        six_r_d_Gamma_3_t_3 + six_r_d_Gamma_2_t*six_r_w_1_t_30 +
-            six_r_d_Gamma_2_t_2*six_r_w_1_t_52 + six_r_d_Gamma_2_t_3*six_r_w_1_t_70 +
-            six_r_d_Gamma_2_t_4*six_r_w_1_t_82
+        six_r_d_Gamma_3_t_3 + six_r_d_Gamma_2_t*six_r_w_1_t_26 +
+            six_r_d_Gamma_2_t_2*six_r_w_1_t_48 + six_r_d_Gamma_2_t_3*six_r_w_1_t_66 +
+            six_r_d_Gamma_2_t_4*six_r_w_1_t_78
+        )
+        # (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        six_r_mu_1_t = (
+        six_r_g_in_axes1_y*six_r_h_1_in_spec1_y - six_r_g_in_axes1_x*six_r_h_1_in_spec1_z
         )
         # (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        six_r_mu_1_o_in_axes1_z = (
-        six_r_g_in_axes1_x*six_r_h_1_in_spec1_z - six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 -
-            six_r_g_in_axes1_y*six_r_h_1_in_spec1_y
-        )
+        six_r_mu_1_o_in_axes1_z = -six_r_mu_1_t - six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5
         # (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         six_r_N_1_o_in_axes1_z = (
         six_r_mu_1_o_in_axes1_z + six_r_N_2_o_in_axes2_x*six_r_c_2 -
@@ -4082,37 +4085,37 @@ def _run_dynamics(m, X, V, q):
             six_r_Jc_1_in_axes1_zz*six_r_o_1_t
         )
         # (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*six_r_D_1_5
+        six_r_d_Gamma_1_t = inv_six_r_w_1_t_8*six_r_D_1_5
         six_r_d_Gamma_1_t_2 = (
-        inv_six_r_w_1_t_28*(six_r_L_c_4_2_in_axes1_z - six_r_d_Gamma_1_t*six_r_w_1_t_15)
+        inv_six_r_w_1_t_24*(six_r_L_c_4_2_in_axes1_z - six_r_d_Gamma_1_t*six_r_w_1_t_11)
         )
         six_r_d_Gamma_1_t_3 = (
-        inv_six_r_w_1_t_49*(six_r_Jc_1_in_axes1_zz + six_r_d_Gamma_1_t_2*six_r_w_1_t_33 -
-            six_r_d_Gamma_1_t*six_r_w_1_t_18)
+        inv_six_r_w_1_t_45*(six_r_Jc_1_in_axes1_zz + six_r_d_Gamma_1_t_2*six_r_w_1_t_29 -
+            six_r_d_Gamma_1_t*six_r_w_1_t_14)
         )
         six_r_d_Gamma_1_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_Jc_2_in_axes1_yz + six_r_d_Gamma_1_t_2*six_r_w_1_t_39 -
-            six_r_d_Gamma_1_t*six_r_w_1_t_22 - six_r_d_Gamma_1_t_3*six_r_w_1_t_55)
+        inv_six_r_w_1_t_63*(six_r_Jc_2_in_axes1_yz + six_r_d_Gamma_1_t_2*six_r_w_1_t_35 -
+            six_r_d_Gamma_1_t*six_r_w_1_t_18 - six_r_d_Gamma_1_t_3*six_r_w_1_t_51)
         )
         six_r_d_Gamma_1_t_5 = (
-        inv_six_r_w_1_t_79*(six_r_L_c_3_2_in_axes1_z + six_r_d_Gamma_1_t*six_r_w_1_t_25 +
-            six_r_d_Gamma_1_t_2*six_r_w_1_t_44 - six_r_d_Gamma_1_t_3*six_r_w_1_t_61 -
-            six_r_d_Gamma_1_t_4*six_r_w_1_t_73)
+        inv_six_r_w_1_t_75*(six_r_L_c_3_2_in_axes1_z + six_r_d_Gamma_1_t*six_r_w_1_t_21 +
+            six_r_d_Gamma_1_t_2*six_r_w_1_t_40 - six_r_d_Gamma_1_t_3*six_r_w_1_t_57 -
+            six_r_d_Gamma_1_t_4*six_r_w_1_t_69)
         )
         six_r_d_Gamma_1_in_axes5_x = (
-        six_r_d_Gamma_1_t_3*six_r_w_1_t_50 + six_r_d_Gamma_1_t_4*six_r_w_1_t_68 +
-            six_r_d_Gamma_1_t_5*six_r_w_1_t_80 + six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_z -
+        six_r_d_Gamma_1_t_3*six_r_w_1_t_46 + six_r_d_Gamma_1_t_4*six_r_w_1_t_64 +
+            six_r_d_Gamma_1_t_5*six_r_w_1_t_76 + six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_z -
             six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_y
         )
         six_r_d_Gamma_1_in_axes5_y = (
-        six_r_d_Gamma_1_t*six_r_w_1_t_13 + six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_x -
-            six_r_d_Gamma_1_t_2*six_r_w_1_t_29 - six_r_d_Gamma_1_t_3*six_r_w_1_t_51 -
-            six_r_d_Gamma_1_t_4*six_r_w_1_t_69 - six_r_d_Gamma_1_t_5*six_r_w_1_t_81 -
+        six_r_d_Gamma_1_t*six_r_w_1_t_9 + six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_x -
+            six_r_d_Gamma_1_t_2*six_r_w_1_t_25 - six_r_d_Gamma_1_t_3*six_r_w_1_t_47 -
+            six_r_d_Gamma_1_t_4*six_r_w_1_t_65 - six_r_d_Gamma_1_t_5*six_r_w_1_t_77 -
             six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_z
         )
         six_r_d_Gamma_1_in_axes5_z = (
-        six_r_d_Gamma_1_t_2*six_r_w_1_t_30 + six_r_d_Gamma_1_t_3*six_r_w_1_t_52 +
-            six_r_d_Gamma_1_t_4*six_r_w_1_t_70 + six_r_d_Gamma_1_t_5*six_r_w_1_t_82 +
+        six_r_d_Gamma_1_t_2*six_r_w_1_t_26 + six_r_d_Gamma_1_t_3*six_r_w_1_t_48 +
+            six_r_d_Gamma_1_t_4*six_r_w_1_t_66 + six_r_d_Gamma_1_t_5*six_r_w_1_t_78 +
             six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_y - six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_x
         )
         # (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
@@ -4179,26 +4182,26 @@ def _run_dynamics(m, X, V, q):
             axis_z_six_r_axes5_z*six_r_d_G_m1_in_axes5_z
         )
         # (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        six_r_G_m1_o_t = inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z
+        six_r_G_m1_o_t = inv_six_r_w_1_t_8*six_r_mu_5_o_in_axes5_z
         six_r_G_m1_o_t_2 = (
-        inv_six_r_w_1_t_28*(six_r_G_m1_o_t*six_r_w_1_t_15 - six_r_N_4_o_in_axes4_z)
+        inv_six_r_w_1_t_24*(six_r_G_m1_o_t*six_r_w_1_t_11 - six_r_N_4_o_in_axes4_z)
         )
         six_r_G_m1_o_t_3 = (
-        inv_six_r_w_1_t_49*(six_r_G_m1_o_t*six_r_w_1_t_18 + six_r_G_m1_o_t_2*six_r_w_1_t_33 -
+        inv_six_r_w_1_t_45*(six_r_G_m1_o_t*six_r_w_1_t_14 + six_r_G_m1_o_t_2*six_r_w_1_t_29 -
             six_r_N_1_o_in_axes1_z)
         )
         six_r_G_m1_o_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_G_m1_o_t*six_r_w_1_t_22 + six_r_G_m1_o_t_2*six_r_w_1_t_39 -
-            six_r_N_2_o_in_axes2_z - six_r_G_m1_o_t_3*six_r_w_1_t_55)
+        inv_six_r_w_1_t_63*(six_r_G_m1_o_t*six_r_w_1_t_18 + six_r_G_m1_o_t_2*six_r_w_1_t_35 -
+            six_r_N_2_o_in_axes2_z - six_r_G_m1_o_t_3*six_r_w_1_t_51)
         )
         six_r_G_m1_o_t_5 = (
-        inv_six_r_w_1_t_79*(six_r_N_3_o_in_axes3_z + six_r_G_m1_o_t*six_r_w_1_t_25 +
-            six_r_G_m1_o_t_3*six_r_w_1_t_61 + six_r_G_m1_o_t_4*six_r_w_1_t_73 -
-            six_r_G_m1_o_t_2*six_r_w_1_t_44)
+        inv_six_r_w_1_t_75*(six_r_N_3_o_in_axes3_z + six_r_G_m1_o_t*six_r_w_1_t_21 +
+            six_r_G_m1_o_t_3*six_r_w_1_t_57 + six_r_G_m1_o_t_4*six_r_w_1_t_69 -
+            six_r_G_m1_o_t_2*six_r_w_1_t_40)
         )
         six_r_G_m1_o_t_6 = (
-        six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_31 + six_r_G_m1_o_t_3*six_r_w_1_t_53 +
-            six_r_G_m1_o_t_4*six_r_w_1_t_71 - six_r_G_m1_o_t_5*six_r_m1_w_1_t)
+        six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_27 + six_r_G_m1_o_t_3*six_r_w_1_t_49 +
+            six_r_G_m1_o_t_4*six_r_w_1_t_67 - six_r_G_m1_o_t_5*six_r_m1_w_1_t)
         )
         # (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_dalpha_G_m2_in_axes5_x = (
@@ -4265,8 +4268,8 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m2_o_t = (
-        six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_32 + six_r_G_m1_o_t_3*six_r_w_1_t_54 +
-            six_r_G_m1_o_t_4*six_r_w_1_t_72 - six_r_G_m1_o_t*six_r_w_1_t_14 -
+        six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_28 + six_r_G_m1_o_t_3*six_r_w_1_t_50 +
+            six_r_G_m1_o_t_4*six_r_w_1_t_68 - six_r_G_m1_o_t*six_r_w_1_t_10 -
             six_r_G_m1_o_t_5*six_r_m2_w_1_t)
         )
         # (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -4409,22 +4412,22 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         six_r_c_o_in_axes5_x = (
-        six_r_G_m1_o_t_3*six_r_w_1_t_50 + six_r_G_m1_o_t_4*six_r_w_1_t_68 +
+        six_r_G_m1_o_t_3*six_r_w_1_t_46 + six_r_G_m1_o_t_4*six_r_w_1_t_64 +
             six_r_W_5_t_3*six_r_h_5_in_spec5_x - six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*six_r_w_1_t_80
+            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*six_r_w_1_t_76
         )
         six_r_c_o_in_axes5_y = (
-        six_r_G_m1_o_t_5*six_r_w_1_t_81 + six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_2) -
+        six_r_G_m1_o_t_5*six_r_w_1_t_77 + six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_2) -
             six_r_B_5_o_in_axes5_yx*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t*six_r_w_1_t_13 -
-            six_r_G_m1_o_t_2*six_r_w_1_t_29 - six_r_G_m1_o_t_3*six_r_w_1_t_51 -
-            six_r_G_m1_o_t_4*six_r_w_1_t_69
+            six_r_B_5_o_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t*six_r_w_1_t_9 -
+            six_r_G_m1_o_t_2*six_r_w_1_t_25 - six_r_G_m1_o_t_3*six_r_w_1_t_47 -
+            six_r_G_m1_o_t_4*six_r_w_1_t_65
         )
         six_r_c_o_in_axes5_z = (
-        six_r_G_m1_o_t_2*six_r_w_1_t_30 + six_r_G_m1_o_t_3*six_r_w_1_t_52 +
-            six_r_G_m1_o_t_4*six_r_w_1_t_70 + six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_2)
+        six_r_G_m1_o_t_2*six_r_w_1_t_26 + six_r_G_m1_o_t_3*six_r_w_1_t_48 +
+            six_r_G_m1_o_t_4*six_r_w_1_t_66 + six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_2)
             - six_r_B_5_o_in_axes5_zx*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_o_t_5*six_r_w_1_t_82
+            six_r_B_5_o_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_o_t_5*six_r_w_1_t_78
         )
         # (six_r-Q) inertia of the leg at the connection point, without the mass gathered there
         six_r_Q_t = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy
@@ -4638,13 +4641,16 @@ def _run_dynamics(m, X, V, q):
             six_r_U_x*six_r_q_y
         )
         # (six_r-H_a_2) moment of the column's unit force about the platform origin
-        six_r_H_a_2_x = six_r_o_2_x + six_r_q_y*six_r_w_2_z - six_r_q_z*six_r_w_2_y
-        six_r_H_a_2_y = six_r_o_2_y + six_r_q_z*six_r_w_2_x - six_r_q_x*six_r_w_2_z
-        six_r_H_a_2_z = six_r_o_2_z + six_r_q_x*six_r_w_2_y - six_r_q_y*six_r_w_2_x
+        six_r_H_a_2_t = six_r_q_y*six_r_w_2_z - six_r_q_z*six_r_w_2_y
+        six_r_H_a_2_t_2 = six_r_q_z*six_r_w_2_x - six_r_q_x*six_r_w_2_z
+        six_r_H_a_2_t_3 = six_r_q_x*six_r_w_2_y - six_r_q_y*six_r_w_2_x
+        six_r_H_a_2_x = six_r_H_a_2_t + six_r_o_2_x
+        six_r_H_a_2_y = six_r_H_a_2_t_2 + six_r_o_2_y
+        six_r_H_a_2_z = six_r_H_a_2_t_3 + six_r_o_2_z
         ok = (
-        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
-            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
+        ok & (abs(six_r_w_1_t_8) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_24) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_45) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_63) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_75) > _TOLERANCE * six_r_size)
         )
         # (M_tt) translational block of M
         M_tt_six_r_xx += six_r_Q_xx
@@ -4872,6 +4878,16 @@ def _run_M(m, X, q):
         six_r_J_5_in_axes4_yz = (
         six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_x - six_r_J_5_in_spec5_yz*six_r_J_5_t
         )
+        # (six_r-S) from the base point to the connection point
+        six_r_q_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
         six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
@@ -4884,6 +4900,54 @@ def _run_M(m, X, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
+        # (six_r-S_dot) velocity of the connection point
+        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
+        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
+        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
+        six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
+        axis_z_six_r_axes5_x = (
+        six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
+            six_r_S_dot_t_6*six_r_base_frame_xz
+        )
+        axis_z_six_r_axes5_y = (
+        six_r_S_dot_t_3*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
+            six_r_S_dot_t_6*six_r_base_frame_yz
+        )
+        axis_z_six_r_axes5_z = (
+        six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
+            six_r_S_dot_t_6*six_r_base_frame_zz
+        )
+        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
+        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
+        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
+        six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
+        six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_13 = six_r_S_dot_t_11*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_y
+        axis_y_six_r_axes5_x = (
+        six_r_S_dot_t_10*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
+            six_r_S_dot_t_13*six_r_base_frame_xz
+        )
+        axis_y_six_r_axes5_y = (
+        six_r_S_dot_t_10*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
+            six_r_S_dot_t_13*six_r_base_frame_yz
+        )
+        axis_y_six_r_axes5_z = (
+        six_r_S_dot_t_10*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
+            six_r_S_dot_t_13*six_r_base_frame_zz
+        )
+        axis_x_six_r_axes5_x = (
+        axis_y_six_r_axes5_y*axis_z_six_r_axes5_z - axis_y_six_r_axes5_z*axis_z_six_r_axes5_y
+        )
+        axis_x_six_r_axes5_y = (
+        axis_y_six_r_axes5_z*axis_z_six_r_axes5_x - axis_y_six_r_axes5_x*axis_z_six_r_axes5_z
+        )
+        axis_x_six_r_axes5_z = (
+        axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
+        )
         # (six_r-r_4) from joint 4 to the connection point, along the links
         six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
         six_r_r_4_in_axes4_z = (
@@ -4945,7 +5009,6 @@ def _run_M(m, X, q):
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
         six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
-        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
         six_r_v_2_in_axes5_x = (
         six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
         )
@@ -4972,53 +5035,7 @@ def _run_M(m, X, q):
             six_r_J_5_t*six_r_r_4_in_axes4_z)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
-        six_r_n_m1_t = six_r_c_3*six_r_h_4_t
-        six_r_n_m1_t_2 = six_r_h_4_t*six_r_s_3
-        six_r_n_m1_t_3 = six_r_c_2*six_r_n_m1_t_2 + six_r_n_m1_t*six_r_s_2
-        six_r_n_m1_t_4 = six_r_n_m1_t_2*six_r_s_2 - six_r_c_2*six_r_n_m1_t
-        six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_4 - six_r_e_2_in_axes5_z*six_r_s_1
-        six_r_n_m1_t_6 = six_r_c_1*six_r_e_2_in_axes5_z + six_r_n_m1_t_4*six_r_s_1
-        axis_z_six_r_axes5_x = (
-        six_r_base_frame_xx*six_r_n_m1_t_3 + six_r_base_frame_xy*six_r_n_m1_t_5 +
-            six_r_base_frame_xz*six_r_n_m1_t_6
-        )
-        axis_z_six_r_axes5_y = (
-        six_r_base_frame_yx*six_r_n_m1_t_3 + six_r_base_frame_yy*six_r_n_m1_t_5 +
-            six_r_base_frame_yz*six_r_n_m1_t_6
-        )
-        axis_z_six_r_axes5_z = (
-        six_r_base_frame_zx*six_r_n_m1_t_3 + six_r_base_frame_zy*six_r_n_m1_t_5 +
-            six_r_base_frame_zz*six_r_n_m1_t_6
-        )
-        six_r_n_m1_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
-        six_r_n_m1_t_8 = six_r_J_5_t*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
-        six_r_n_m1_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_c_2*six_r_n_m1_t_9 + six_r_n_m1_t_8*six_r_s_2
-        six_r_n_m1_t_11 = six_r_n_m1_t_9*six_r_s_2 - six_r_c_2*six_r_n_m1_t_8
-        six_r_n_m1_t_12 = six_r_c_1*six_r_n_m1_t_11 - six_r_e_2_in_axes5_y*six_r_s_1
-        six_r_n_m1_t_13 = six_r_c_1*six_r_e_2_in_axes5_y + six_r_n_m1_t_11*six_r_s_1
-        axis_y_six_r_axes5_x = (
-        six_r_base_frame_xx*six_r_n_m1_t_10 + six_r_base_frame_xy*six_r_n_m1_t_12 +
-            six_r_base_frame_xz*six_r_n_m1_t_13
-        )
-        axis_y_six_r_axes5_y = (
-        six_r_base_frame_yx*six_r_n_m1_t_10 + six_r_base_frame_yy*six_r_n_m1_t_12 +
-            six_r_base_frame_yz*six_r_n_m1_t_13
-        )
-        axis_y_six_r_axes5_z = (
-        six_r_base_frame_zx*six_r_n_m1_t_10 + six_r_base_frame_zy*six_r_n_m1_t_12 +
-            six_r_base_frame_zz*six_r_n_m1_t_13
-        )
-        axis_x_six_r_axes5_x = (
-        axis_y_six_r_axes5_y*axis_z_six_r_axes5_z - axis_y_six_r_axes5_z*axis_z_six_r_axes5_y
-        )
-        axis_x_six_r_axes5_y = (
-        axis_y_six_r_axes5_z*axis_z_six_r_axes5_x - axis_y_six_r_axes5_x*axis_z_six_r_axes5_z
-        )
-        axis_x_six_r_axes5_z = (
-        axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
-        )
-        six_r_n_m1_t_14 = (
+        six_r_n_m1_t = (
         six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy + R_yx*six_r_base_frame_yy
             + R_zx*six_r_base_frame_zy) +
             six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
@@ -5026,7 +5043,7 @@ def _run_M(m, X, q):
             six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
             R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy)
         )
-        six_r_n_m1_t_15 = (
+        six_r_n_m1_t_2 = (
         six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz + R_yx*six_r_base_frame_yz
             + R_zx*six_r_base_frame_zz) +
             six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
@@ -5034,7 +5051,7 @@ def _run_M(m, X, q):
             six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
             R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz)
         )
-        six_r_n_m1_t_16 = (
+        six_r_n_m1_t_3 = (
         six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx + R_yx*six_r_base_frame_yx
             + R_zx*six_r_base_frame_zx) +
             six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
@@ -5042,16 +5059,25 @@ def _run_M(m, X, q):
             six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
             R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx)
         )
-        six_r_n_m1_t_17 = six_r_c_1*six_r_n_m1_t_14 + six_r_n_m1_t_15*six_r_s_1
-        six_r_n_m1_t_18 = six_r_c_1*six_r_n_m1_t_15 - six_r_n_m1_t_14*six_r_s_1
-        six_r_n_m1_t_19 = six_r_c_2*six_r_n_m1_t_16 + six_r_n_m1_t_17*six_r_s_2
-        six_r_n_m1_t_20 = six_r_c_2*six_r_n_m1_t_17 - six_r_n_m1_t_16*six_r_s_2
-        six_r_n_m1_t_21 = six_r_n_m1_t_19*six_r_s_3 - six_r_c_3*six_r_n_m1_t_20
-        six_r_n_m1_t_22 = six_r_c_3*six_r_n_m1_t_19 + six_r_n_m1_t_20*six_r_s_3
-        six_r_n_m1_t_23 = six_r_h_4_t*six_r_n_m1_t_18 - six_r_e_2_in_axes5_z*six_r_n_m1_t_21
-        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_23 + six_r_e_4_in_axes5_x*six_r_n_m1_t_22
+        six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1
+        six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1
+        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_3 + six_r_n_m1_t_4*six_r_s_2
+        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
+        six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
+        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
+        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
         six_r_end_p1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_n_m1_t_23 - six_r_J_5_t*six_r_n_m1_t_22
+        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
+        )
+        six_r_n_m1_t_11 = (
+        six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_t_12 = (
+        six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_in_axes4_z = (
+        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
         )
         six_r_n_m1_x = (
         axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y
@@ -5063,9 +5089,16 @@ def _run_M(m, X, q):
         axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = (
-        six_r_e_2_in_axes5_z*six_r_n_m1_t_18 + six_r_h_4_t*six_r_n_m1_t_21
+        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_n_m2_t = (
+        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
         )
+        six_r_n_m2_t_2 = (
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
         six_r_n_m2_x = (
         axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
             axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z
@@ -5079,251 +5112,234 @@ def _run_M(m, X, q):
             axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z
         )
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_w_1_t = (
-        six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        six_r_w_1_t = six_r_n_m1_t_11*six_r_size
+        six_r_w_1_t_2 = six_r_n_m2_t*six_r_size
+        six_r_w_1_t_3 = six_r_n_m1_t_12*six_r_size
+        six_r_w_1_t_4 = six_r_n_m2_t_2*six_r_size
+        six_r_w_1_t_5 = six_r_n_m1_in_axes4_z*six_r_size
+        six_r_w_1_t_6 = six_r_n_m2_in_axes4_z*six_r_size
+        six_r_w_1_t_7 = six_r_end_p1_in_axes5_y*six_r_size
+        six_r_w_1_t_8 = sqrt(six_r_size_t + six_r_w_1_t_7*six_r_w_1_t_7)
+        inv_six_r_w_1_t_8 = 1.0/six_r_w_1_t_8
+        six_r_w_1_t_9 = inv_six_r_w_1_t_8*six_r_platform_joint_offset_x
+        six_r_w_1_t_10 = inv_six_r_w_1_t_8*six_r_w_1_t_7
+        six_r_w_1_t_11 = six_r_w_1_t_10*six_r_w_1_t_6
+        six_r_w_1_t_12 = six_r_w_1_t_11*six_r_w_1_t_9
+        six_r_w_1_t_13 = six_r_w_1_t_6 - six_r_w_1_t_10*six_r_w_1_t_11
+        six_r_w_1_t_14 = six_r_v_1_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_10*six_r_w_1_t_2
+        six_r_w_1_t_15 = six_r_v_1_in_axes5_y - six_r_w_1_t_14*six_r_w_1_t_9
+        six_r_w_1_t_16 = six_r_w_1_t_2 + six_r_w_1_t_10*six_r_w_1_t_14
+        six_r_w_1_t_17 = six_r_w_1_t_10*six_r_w_1_t_4
+        six_r_w_1_t_18 = six_r_v_2_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_v_2_in_axes5_y - six_r_w_1_t_18*six_r_w_1_t_9
+        six_r_w_1_t_20 = six_r_w_1_t_4 + six_r_w_1_t_10*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_w_1_t_17 - six_r_v_3_in_axes5_y*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_3_in_axes5_y + six_r_w_1_t_21*six_r_w_1_t_9
+        six_r_w_1_t_23 = six_r_w_1_t_4 - six_r_w_1_t_10*six_r_w_1_t_21
+        six_r_w_1_t_24 = (
+        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_13*six_r_w_1_t_13 + six_r_w_1_t_5*six_r_w_1_t_5)
         )
-        six_r_w_1_t_2 = (
-        six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        inv_six_r_w_1_t_24 = 1.0/six_r_w_1_t_24
+        six_r_w_1_t_25 = inv_six_r_w_1_t_24*six_r_w_1_t_12
+        six_r_w_1_t_26 = inv_six_r_w_1_t_24*six_r_v_4_in_axes5_z
+        six_r_w_1_t_27 = inv_six_r_w_1_t_24*six_r_w_1_t_5
+        six_r_w_1_t_28 = inv_six_r_w_1_t_24*six_r_w_1_t_13
+        six_r_w_1_t_29 = (
+        six_r_w_1_t*six_r_w_1_t_27 + six_r_w_1_t_15*six_r_w_1_t_25 + six_r_w_1_t_16*six_r_w_1_t_28
+            - six_r_v_1_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_3 = (
-        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_w_1_t_30 = six_r_w_1_t_25*six_r_w_1_t_29 - six_r_w_1_t_15
+        six_r_w_1_t_31 = six_r_v_1_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_29
+        six_r_w_1_t_32 = six_r_w_1_t_27*six_r_w_1_t_29 - six_r_w_1_t
+        six_r_w_1_t_33 = six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_16
+        six_r_w_1_t_34 = six_r_w_1_t_27*six_r_w_1_t_3
+        six_r_w_1_t_35 = (
+        six_r_w_1_t_34 + six_r_w_1_t_19*six_r_w_1_t_25 + six_r_w_1_t_20*six_r_w_1_t_28 -
+            six_r_v_2_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_w_1_t_36 = six_r_w_1_t_25*six_r_w_1_t_35 - six_r_w_1_t_19
+        six_r_w_1_t_37 = six_r_v_2_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_35
+        six_r_w_1_t_38 = six_r_w_1_t_27*six_r_w_1_t_35 - six_r_w_1_t_3
+        six_r_w_1_t_39 = six_r_w_1_t_28*six_r_w_1_t_35 - six_r_w_1_t_20
+        six_r_w_1_t_40 = (
+        six_r_w_1_t_34 + six_r_w_1_t_22*six_r_w_1_t_25 + six_r_w_1_t_23*six_r_w_1_t_28 -
+            six_r_v_3_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_5 = six_r_size*six_r_w_1_t
-        six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
-        six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
-        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
-        six_r_w_1_t_9 = (
-        six_r_size*(-six_r_J_5_t*six_r_n_m1_in_axes5_y -
-            six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y)
+        six_r_w_1_t_41 = six_r_w_1_t_25*six_r_w_1_t_40 - six_r_w_1_t_22
+        six_r_w_1_t_42 = six_r_v_3_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_40
+        six_r_w_1_t_43 = six_r_w_1_t_27*six_r_w_1_t_40 - six_r_w_1_t_3
+        six_r_w_1_t_44 = six_r_w_1_t_28*six_r_w_1_t_40 - six_r_w_1_t_23
+        six_r_w_1_t_45 = (
+        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_30*six_r_w_1_t_30 +
+            six_r_w_1_t_31*six_r_w_1_t_31 + six_r_w_1_t_32*six_r_w_1_t_32 +
+            six_r_w_1_t_33*six_r_w_1_t_33)
         )
-        six_r_w_1_t_10 = six_r_J_5_t*six_r_end_p1_in_axes5_z*six_r_size
-        six_r_w_1_t_11 = six_r_end_p1_in_axes5_y*six_r_size
-        six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
-        inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
-        six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x
-        six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11
-        six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14
-        six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15
-        six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15
-        six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_14*six_r_w_1_t_6
-        six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18
-        six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18
-        six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8
-        six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21
-        six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22
-        six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22
-        six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13
-        six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25
-        six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25
-        six_r_w_1_t_28 = (
-        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_16*six_r_w_1_t_16 +
-            six_r_w_1_t_17*six_r_w_1_t_17 + six_r_w_1_t_9*six_r_w_1_t_9)
+        inv_six_r_w_1_t_45 = 1.0/six_r_w_1_t_45
+        six_r_w_1_t_46 = inv_six_r_w_1_t_45*six_r_v_1_in_axes5_x
+        six_r_w_1_t_47 = inv_six_r_w_1_t_45*six_r_w_1_t_30
+        six_r_w_1_t_48 = inv_six_r_w_1_t_45*six_r_w_1_t_31
+        six_r_w_1_t_49 = inv_six_r_w_1_t_45*six_r_w_1_t_32
+        six_r_w_1_t_50 = inv_six_r_w_1_t_45*six_r_w_1_t_33
+        six_r_w_1_t_51 = (
+        six_r_v_2_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_36*six_r_w_1_t_47 +
+            six_r_w_1_t_37*six_r_w_1_t_48 + six_r_w_1_t_38*six_r_w_1_t_49 +
+            six_r_w_1_t_39*six_r_w_1_t_50
         )
-        inv_six_r_w_1_t_28 = 1.0/six_r_w_1_t_28
-        six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16
-        six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z
-        six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9
-        six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17
-        six_r_w_1_t_33 = (
-        six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32 +
-            six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_52 = six_r_v_2_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_51
+        six_r_w_1_t_53 = six_r_w_1_t_36 - six_r_w_1_t_47*six_r_w_1_t_51
+        six_r_w_1_t_54 = six_r_w_1_t_37 - six_r_w_1_t_48*six_r_w_1_t_51
+        six_r_w_1_t_55 = six_r_w_1_t_38 - six_r_w_1_t_49*six_r_w_1_t_51
+        six_r_w_1_t_56 = six_r_w_1_t_39 - six_r_w_1_t_50*six_r_w_1_t_51
+        six_r_w_1_t_57 = (
+        six_r_v_3_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_41*six_r_w_1_t_47 +
+            six_r_w_1_t_42*six_r_w_1_t_48 + six_r_w_1_t_43*six_r_w_1_t_49 +
+            six_r_w_1_t_44*six_r_w_1_t_50
         )
-        six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19
-        six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33
-        six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5
-        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20
-        six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7
-        six_r_w_1_t_39 = (
-        six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32 -
-            six_r_v_2_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_58 = six_r_v_3_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_57
+        six_r_w_1_t_59 = six_r_w_1_t_41 - six_r_w_1_t_47*six_r_w_1_t_57
+        six_r_w_1_t_60 = six_r_w_1_t_42 - six_r_w_1_t_48*six_r_w_1_t_57
+        six_r_w_1_t_61 = six_r_w_1_t_43 - six_r_w_1_t_49*six_r_w_1_t_57
+        six_r_w_1_t_62 = six_r_w_1_t_44 - six_r_w_1_t_50*six_r_w_1_t_57
+        six_r_w_1_t_63 = (
+        sqrt(six_r_w_1_t_52*six_r_w_1_t_52 + six_r_w_1_t_53*six_r_w_1_t_53 +
+            six_r_w_1_t_54*six_r_w_1_t_54 + six_r_w_1_t_55*six_r_w_1_t_55 +
+            six_r_w_1_t_56*six_r_w_1_t_56)
         )
-        six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23
-        six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39
-        six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7
-        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24
-        six_r_w_1_t_44 = (
-        six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32 -
-            six_r_v_3_in_axes5_z*six_r_w_1_t_30
+        inv_six_r_w_1_t_63 = 1.0/six_r_w_1_t_63
+        six_r_w_1_t_64 = inv_six_r_w_1_t_63*six_r_w_1_t_52
+        six_r_w_1_t_65 = inv_six_r_w_1_t_63*six_r_w_1_t_53
+        six_r_w_1_t_66 = inv_six_r_w_1_t_63*six_r_w_1_t_54
+        six_r_w_1_t_67 = inv_six_r_w_1_t_63*six_r_w_1_t_55
+        six_r_w_1_t_68 = inv_six_r_w_1_t_63*six_r_w_1_t_56
+        six_r_w_1_t_69 = (
+        six_r_w_1_t_58*six_r_w_1_t_64 + six_r_w_1_t_59*six_r_w_1_t_65 +
+            six_r_w_1_t_60*six_r_w_1_t_66 + six_r_w_1_t_61*six_r_w_1_t_67 +
+            six_r_w_1_t_62*six_r_w_1_t_68
         )
-        six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26
-        six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44
-        six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7
-        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27
-        six_r_w_1_t_49 = (
-        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_34*six_r_w_1_t_34 +
-            six_r_w_1_t_35*six_r_w_1_t_35 + six_r_w_1_t_36*six_r_w_1_t_36 +
-            six_r_w_1_t_37*six_r_w_1_t_37)
+        six_r_w_1_t_70 = six_r_w_1_t_58 - six_r_w_1_t_64*six_r_w_1_t_69
+        six_r_w_1_t_71 = six_r_w_1_t_59 - six_r_w_1_t_65*six_r_w_1_t_69
+        six_r_w_1_t_72 = six_r_w_1_t_60 - six_r_w_1_t_66*six_r_w_1_t_69
+        six_r_w_1_t_73 = six_r_w_1_t_61 - six_r_w_1_t_67*six_r_w_1_t_69
+        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_69
+        six_r_w_1_t_75 = (
+        sqrt(six_r_w_1_t_70*six_r_w_1_t_70 + six_r_w_1_t_71*six_r_w_1_t_71 +
+            six_r_w_1_t_72*six_r_w_1_t_72 + six_r_w_1_t_73*six_r_w_1_t_73 +
+            six_r_w_1_t_74*six_r_w_1_t_74)
         )
-        inv_six_r_w_1_t_49 = 1.0/six_r_w_1_t_49
-        six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x
-        six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34
-        six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35
-        six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36
-        six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37
-        six_r_w_1_t_55 = (
-        six_r_v_2_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_40*six_r_w_1_t_51 +
-            six_r_w_1_t_41*six_r_w_1_t_52 + six_r_w_1_t_42*six_r_w_1_t_53 +
-            six_r_w_1_t_43*six_r_w_1_t_54
-        )
-        six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55
-        six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55
-        six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55
-        six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55
-        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55
-        six_r_w_1_t_61 = (
-        six_r_v_3_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_45*six_r_w_1_t_51 +
-            six_r_w_1_t_46*six_r_w_1_t_52 + six_r_w_1_t_47*six_r_w_1_t_53 +
-            six_r_w_1_t_48*six_r_w_1_t_54
-        )
-        six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61
-        six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61
-        six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61
-        six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61
-        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61
-        six_r_w_1_t_67 = (
-        sqrt(six_r_w_1_t_56*six_r_w_1_t_56 + six_r_w_1_t_57*six_r_w_1_t_57 +
-            six_r_w_1_t_58*six_r_w_1_t_58 + six_r_w_1_t_59*six_r_w_1_t_59 +
-            six_r_w_1_t_60*six_r_w_1_t_60)
-        )
-        inv_six_r_w_1_t_67 = 1.0/six_r_w_1_t_67
-        six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56
-        six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57
-        six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58
-        six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59
-        six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60
-        six_r_w_1_t_73 = (
-        six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69 +
-            six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72
-        )
-        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73
-        six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73
-        six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73
-        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73
-        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73
-        six_r_w_1_t_79 = (
-        sqrt(six_r_w_1_t_74*six_r_w_1_t_74 + six_r_w_1_t_75*six_r_w_1_t_75 +
-            six_r_w_1_t_76*six_r_w_1_t_76 + six_r_w_1_t_77*six_r_w_1_t_77 +
-            six_r_w_1_t_78*six_r_w_1_t_78)
-        )
-        inv_six_r_w_1_t_79 = 1.0/six_r_w_1_t_79
-        six_r_w_1_t_80 = inv_six_r_w_1_t_79*six_r_w_1_t_74
-        six_r_w_1_t_81 = inv_six_r_w_1_t_79*six_r_w_1_t_75
-        six_r_w_1_t_82 = inv_six_r_w_1_t_79*six_r_w_1_t_76
-        six_r_w_1_t_83 = inv_six_r_w_1_t_49*inv_six_r_w_1_t_67*six_r_w_1_t_55
-        six_r_w_1_t_84 = (
-        inv_six_r_w_1_t_79*(inv_six_r_w_1_t_49*six_r_w_1_t_61 - six_r_w_1_t_73*six_r_w_1_t_83)
+        inv_six_r_w_1_t_75 = 1.0/six_r_w_1_t_75
+        six_r_w_1_t_76 = inv_six_r_w_1_t_75*six_r_w_1_t_70
+        six_r_w_1_t_77 = inv_six_r_w_1_t_75*six_r_w_1_t_71
+        six_r_w_1_t_78 = inv_six_r_w_1_t_75*six_r_w_1_t_72
+        six_r_w_1_t_79 = inv_six_r_w_1_t_45*inv_six_r_w_1_t_63*six_r_w_1_t_51
+        six_r_w_1_t_80 = (
+        inv_six_r_w_1_t_75*(inv_six_r_w_1_t_45*six_r_w_1_t_57 - six_r_w_1_t_69*six_r_w_1_t_79)
         )
         six_r_w_1_in_axes5_x = (
-        inv_six_r_w_1_t_49*six_r_w_1_t_50 - six_r_w_1_t_68*six_r_w_1_t_83 -
-            six_r_w_1_t_80*six_r_w_1_t_84
+        inv_six_r_w_1_t_45*six_r_w_1_t_46 - six_r_w_1_t_64*six_r_w_1_t_79 -
+            six_r_w_1_t_76*six_r_w_1_t_80
         )
         six_r_w_1_in_axes5_y = (
-        six_r_w_1_t_69*six_r_w_1_t_83 + six_r_w_1_t_81*six_r_w_1_t_84 -
-            inv_six_r_w_1_t_49*six_r_w_1_t_51
+        six_r_w_1_t_65*six_r_w_1_t_79 + six_r_w_1_t_77*six_r_w_1_t_80 -
+            inv_six_r_w_1_t_45*six_r_w_1_t_47
         )
         six_r_w_1_in_axes5_z = (
-        inv_six_r_w_1_t_49*six_r_w_1_t_52 - six_r_w_1_t_70*six_r_w_1_t_83 -
-            six_r_w_1_t_82*six_r_w_1_t_84
+        inv_six_r_w_1_t_45*six_r_w_1_t_48 - six_r_w_1_t_66*six_r_w_1_t_79 -
+            six_r_w_1_t_78*six_r_w_1_t_80
         )
         # (six_r-m1_w_1) moment part 1 of reciprocal wrench 1
-        six_r_m1_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_77
+        six_r_m1_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_73
         six_r_m1_w_1_t_2 = (
-        six_r_size*(six_r_m1_w_1_t*six_r_w_1_t_84 + six_r_w_1_t_71*six_r_w_1_t_83 -
-            inv_six_r_w_1_t_49*six_r_w_1_t_53)
+        six_r_size*(six_r_m1_w_1_t*six_r_w_1_t_80 + six_r_w_1_t_67*six_r_w_1_t_79 -
+            inv_six_r_w_1_t_45*six_r_w_1_t_49)
         )
         # (six_r-m2_w_1) moment part 2 of reciprocal wrench 1
-        six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78
+        six_r_m2_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_74
         six_r_m2_w_1_t_2 = (
-        six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_84 + six_r_w_1_t_72*six_r_w_1_t_83 -
-            inv_six_r_w_1_t_49*six_r_w_1_t_54)
+        six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_80 + six_r_w_1_t_68*six_r_w_1_t_79 -
+            inv_six_r_w_1_t_45*six_r_w_1_t_50)
         )
         # (six_r-w_2) force part of reciprocal wrench 2
-        six_r_w_2_t = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73
-        six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 - six_r_w_1_t_80*six_r_w_2_t
-        six_r_w_2_in_axes5_y = six_r_w_1_t_81*six_r_w_2_t - inv_six_r_w_1_t_67*six_r_w_1_t_69
-        six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 - six_r_w_1_t_82*six_r_w_2_t
+        six_r_w_2_t = inv_six_r_w_1_t_63*inv_six_r_w_1_t_75*six_r_w_1_t_69
+        six_r_w_2_in_axes5_x = inv_six_r_w_1_t_63*six_r_w_1_t_64 - six_r_w_1_t_76*six_r_w_2_t
+        six_r_w_2_in_axes5_y = six_r_w_1_t_77*six_r_w_2_t - inv_six_r_w_1_t_63*six_r_w_1_t_65
+        six_r_w_2_in_axes5_z = inv_six_r_w_1_t_63*six_r_w_1_t_66 - six_r_w_1_t_78*six_r_w_2_t
         # (six_r-m1_w_2) moment part 1 of reciprocal wrench 2
-        six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_71 - six_r_m1_w_1_t*six_r_w_2_t)
+        six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_67 - six_r_m1_w_1_t*six_r_w_2_t)
         # (six_r-m2_w_2) moment part 2 of reciprocal wrench 2
-        six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_72 - six_r_m2_w_1_t*six_r_w_2_t)
+        six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_68 - six_r_m2_w_1_t*six_r_w_2_t)
         # (six_r-w_3) force part of reciprocal wrench 3
-        six_r_w_3_in_axes5_x = inv_six_r_w_1_t_79*six_r_w_1_t_80
-        six_r_w_3_t = inv_six_r_w_1_t_79*six_r_w_1_t_81
-        six_r_w_3_in_axes5_z = inv_six_r_w_1_t_79*six_r_w_1_t_82
+        six_r_w_3_in_axes5_x = inv_six_r_w_1_t_75*six_r_w_1_t_76
+        six_r_w_3_t = inv_six_r_w_1_t_75*six_r_w_1_t_77
+        six_r_w_3_in_axes5_z = inv_six_r_w_1_t_75*six_r_w_1_t_78
         # (six_r-m1_w_3) moment part 1 of reciprocal wrench 3
-        six_r_m1_w_3 = inv_six_r_w_1_t_79*six_r_m1_w_1_t*six_r_size
+        six_r_m1_w_3 = inv_six_r_w_1_t_75*six_r_m1_w_1_t*six_r_size
         # (six_r-m2_w_3) moment part 2 of reciprocal wrench 3
-        six_r_m2_w_3 = inv_six_r_w_1_t_79*six_r_m2_w_1_t*six_r_size
+        six_r_m2_w_3 = inv_six_r_w_1_t_75*six_r_m2_w_1_t*six_r_size
         # (six_r-w_4) force part of reciprocal wrench 4
-        six_r_w_4_t = inv_six_r_w_1_t_28*inv_six_r_w_1_t_49*six_r_w_1_t_33
+        six_r_w_4_t = inv_six_r_w_1_t_24*inv_six_r_w_1_t_45*six_r_w_1_t_29
         six_r_w_4_t_2 = (
-        inv_six_r_w_1_t_67*(inv_six_r_w_1_t_28*six_r_w_1_t_39 - six_r_w_1_t_55*six_r_w_4_t)
+        inv_six_r_w_1_t_63*(inv_six_r_w_1_t_24*six_r_w_1_t_35 - six_r_w_1_t_51*six_r_w_4_t)
         )
         six_r_w_4_t_3 = (
-        inv_six_r_w_1_t_79*(six_r_w_1_t_61*six_r_w_4_t + six_r_w_1_t_73*six_r_w_4_t_2 -
-            inv_six_r_w_1_t_28*six_r_w_1_t_44)
+        inv_six_r_w_1_t_75*(six_r_w_1_t_57*six_r_w_4_t + six_r_w_1_t_69*six_r_w_4_t_2 -
+            inv_six_r_w_1_t_24*six_r_w_1_t_40)
         )
         six_r_w_4_in_axes5_x = (
-        six_r_w_1_t_50*six_r_w_4_t + six_r_w_1_t_68*six_r_w_4_t_2 - six_r_w_1_t_80*six_r_w_4_t_3
+        six_r_w_1_t_46*six_r_w_4_t + six_r_w_1_t_64*six_r_w_4_t_2 - six_r_w_1_t_76*six_r_w_4_t_3
         )
         six_r_w_4_in_axes5_y = (
-        six_r_w_1_t_81*six_r_w_4_t_3 - inv_six_r_w_1_t_28*six_r_w_1_t_29 -
-            six_r_w_1_t_51*six_r_w_4_t - six_r_w_1_t_69*six_r_w_4_t_2
+        six_r_w_1_t_77*six_r_w_4_t_3 - inv_six_r_w_1_t_24*six_r_w_1_t_25 -
+            six_r_w_1_t_47*six_r_w_4_t - six_r_w_1_t_65*six_r_w_4_t_2
         )
         six_r_w_4_in_axes5_z = (
-        inv_six_r_w_1_t_28*six_r_w_1_t_30 + six_r_w_1_t_52*six_r_w_4_t +
-            six_r_w_1_t_70*six_r_w_4_t_2 - six_r_w_1_t_82*six_r_w_4_t_3
+        inv_six_r_w_1_t_24*six_r_w_1_t_26 + six_r_w_1_t_48*six_r_w_4_t +
+            six_r_w_1_t_66*six_r_w_4_t_2 - six_r_w_1_t_78*six_r_w_4_t_3
         )
         # (six_r-m1_w_4) moment part 1 of reciprocal wrench 4
         six_r_m1_w_4 = (
-        six_r_size*(inv_six_r_w_1_t_28*six_r_w_1_t_31 + six_r_w_1_t_53*six_r_w_4_t +
-            six_r_w_1_t_71*six_r_w_4_t_2 - six_r_m1_w_1_t*six_r_w_4_t_3)
+        six_r_size*(inv_six_r_w_1_t_24*six_r_w_1_t_27 + six_r_w_1_t_49*six_r_w_4_t +
+            six_r_w_1_t_67*six_r_w_4_t_2 - six_r_m1_w_1_t*six_r_w_4_t_3)
         )
         # (six_r-m2_w_4) moment part 2 of reciprocal wrench 4
         six_r_m2_w_4 = (
-        six_r_size*(inv_six_r_w_1_t_28*six_r_w_1_t_32 + six_r_w_1_t_54*six_r_w_4_t +
-            six_r_w_1_t_72*six_r_w_4_t_2 - six_r_m2_w_1_t*six_r_w_4_t_3)
+        six_r_size*(inv_six_r_w_1_t_24*six_r_w_1_t_28 + six_r_w_1_t_50*six_r_w_4_t +
+            six_r_w_1_t_68*six_r_w_4_t_2 - six_r_m2_w_1_t*six_r_w_4_t_3)
         )
         # (six_r-w_5) force part of reciprocal wrench 5
-        six_r_w_5_t = inv_six_r_w_1_t_12*inv_six_r_w_1_t_28*six_r_w_1_t_15
+        six_r_w_5_t = inv_six_r_w_1_t_24*inv_six_r_w_1_t_8*six_r_w_1_t_11
         six_r_w_5_t_2 = (
-        inv_six_r_w_1_t_49*(inv_six_r_w_1_t_12*six_r_w_1_t_18 + six_r_w_1_t_33*six_r_w_5_t)
+        inv_six_r_w_1_t_45*(inv_six_r_w_1_t_8*six_r_w_1_t_14 + six_r_w_1_t_29*six_r_w_5_t)
         )
         six_r_w_5_t_3 = (
-        inv_six_r_w_1_t_67*(inv_six_r_w_1_t_12*six_r_w_1_t_22 + six_r_w_1_t_39*six_r_w_5_t -
-            six_r_w_1_t_55*six_r_w_5_t_2)
+        inv_six_r_w_1_t_63*(inv_six_r_w_1_t_8*six_r_w_1_t_18 + six_r_w_1_t_35*six_r_w_5_t -
+            six_r_w_1_t_51*six_r_w_5_t_2)
         )
         six_r_w_5_t_4 = (
-        inv_six_r_w_1_t_79*(inv_six_r_w_1_t_12*six_r_w_1_t_25 + six_r_w_1_t_61*six_r_w_5_t_2 +
-            six_r_w_1_t_73*six_r_w_5_t_3 - six_r_w_1_t_44*six_r_w_5_t)
+        inv_six_r_w_1_t_75*(inv_six_r_w_1_t_8*six_r_w_1_t_21 + six_r_w_1_t_57*six_r_w_5_t_2 +
+            six_r_w_1_t_69*six_r_w_5_t_3 - six_r_w_1_t_40*six_r_w_5_t)
         )
         six_r_w_5_t_5 = (
-        six_r_w_1_t_50*six_r_w_5_t_2 + six_r_w_1_t_68*six_r_w_5_t_3 - six_r_w_1_t_80*six_r_w_5_t_4
+        six_r_w_1_t_46*six_r_w_5_t_2 + six_r_w_1_t_64*six_r_w_5_t_3 - six_r_w_1_t_76*six_r_w_5_t_4
         )
         six_r_w_5_in_axes5_y = (
-        inv_six_r_w_1_t_12*six_r_w_1_t_13 + six_r_w_1_t_29*six_r_w_5_t +
-            six_r_w_1_t_51*six_r_w_5_t_2 + six_r_w_1_t_69*six_r_w_5_t_3 -
-            six_r_w_1_t_81*six_r_w_5_t_4
+        inv_six_r_w_1_t_8*six_r_w_1_t_9 + six_r_w_1_t_25*six_r_w_5_t +
+            six_r_w_1_t_47*six_r_w_5_t_2 + six_r_w_1_t_65*six_r_w_5_t_3 -
+            six_r_w_1_t_77*six_r_w_5_t_4
         )
         six_r_w_5_in_axes5_z = (
-        six_r_w_1_t_82*six_r_w_5_t_4 - six_r_w_1_t_30*six_r_w_5_t - six_r_w_1_t_52*six_r_w_5_t_2 -
-            six_r_w_1_t_70*six_r_w_5_t_3
+        six_r_w_1_t_78*six_r_w_5_t_4 - six_r_w_1_t_26*six_r_w_5_t - six_r_w_1_t_48*six_r_w_5_t_2 -
+            six_r_w_1_t_66*six_r_w_5_t_3
         )
         # (six_r-m1_w_5) moment part 1 of reciprocal wrench 5
         six_r_m1_w_5_t = (
-        six_r_size*(six_r_w_1_t_31*six_r_w_5_t + six_r_w_1_t_53*six_r_w_5_t_2 +
-            six_r_w_1_t_71*six_r_w_5_t_3 - six_r_m1_w_1_t*six_r_w_5_t_4)
+        six_r_size*(six_r_w_1_t_27*six_r_w_5_t + six_r_w_1_t_49*six_r_w_5_t_2 +
+            six_r_w_1_t_67*six_r_w_5_t_3 - six_r_m1_w_1_t*six_r_w_5_t_4)
         )
         # (six_r-m2_w_5) moment part 2 of reciprocal wrench 5
         six_r_m2_w_5_t = (
-        six_r_size*(six_r_w_1_t_32*six_r_w_5_t + six_r_w_1_t_54*six_r_w_5_t_2 +
-            six_r_w_1_t_72*six_r_w_5_t_3 - inv_six_r_w_1_t_12*six_r_w_1_t_14 -
+        six_r_size*(six_r_w_1_t_28*six_r_w_5_t + six_r_w_1_t_50*six_r_w_5_t_2 +
+            six_r_w_1_t_68*six_r_w_5_t_3 - inv_six_r_w_1_t_8*six_r_w_1_t_10 -
             six_r_m2_w_1_t*six_r_w_5_t_4)
         )
         # (six_r-o_1) moment part of reciprocal wrench 1
@@ -5557,35 +5573,35 @@ def _run_M(m, X, q):
             six_r_J_5_in_spec5_zz*six_r_o_5_t
         )
         # (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
-        six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*six_r_J_5_in_spec5_zz
+        six_r_d_Gamma_5_t = inv_six_r_w_1_t_8*six_r_J_5_in_spec5_zz
         six_r_d_Gamma_5_t_2 = (
-        inv_six_r_w_1_t_28*(six_r_J_5_in_axes4_yz - six_r_d_Gamma_5_t*six_r_w_1_t_15)
+        inv_six_r_w_1_t_24*(six_r_J_5_in_axes4_yz - six_r_d_Gamma_5_t*six_r_w_1_t_11)
         )
         six_r_d_Gamma_5_t_3 = (
-        inv_six_r_w_1_t_49*(six_r_D_1_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_33 -
-            six_r_d_Gamma_5_t*six_r_w_1_t_18)
+        inv_six_r_w_1_t_45*(six_r_D_1_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_29 -
+            six_r_d_Gamma_5_t*six_r_w_1_t_14)
         )
         six_r_d_Gamma_5_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_D_3_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_39 -
-            six_r_d_Gamma_5_t*six_r_w_1_t_22 - six_r_d_Gamma_5_t_3*six_r_w_1_t_55)
+        inv_six_r_w_1_t_63*(six_r_D_3_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_35 -
+            six_r_d_Gamma_5_t*six_r_w_1_t_18 - six_r_d_Gamma_5_t_3*six_r_w_1_t_51)
         )
         six_r_d_Gamma_5_t_5 = (
-        inv_six_r_w_1_t_79*(six_r_D_3_5 + six_r_d_Gamma_5_t*six_r_w_1_t_25 +
-            six_r_d_Gamma_5_t_2*six_r_w_1_t_44 - six_r_d_Gamma_5_t_3*six_r_w_1_t_61 -
-            six_r_d_Gamma_5_t_4*six_r_w_1_t_73)
+        inv_six_r_w_1_t_75*(six_r_D_3_5 + six_r_d_Gamma_5_t*six_r_w_1_t_21 +
+            six_r_d_Gamma_5_t_2*six_r_w_1_t_40 - six_r_d_Gamma_5_t_3*six_r_w_1_t_57 -
+            six_r_d_Gamma_5_t_4*six_r_w_1_t_69)
         )
         six_r_d_Gamma_5_in_axes5_z = (
-        six_r_d_Gamma_5_t_2*six_r_w_1_t_30 + six_r_d_Gamma_5_t_3*six_r_w_1_t_52 +
-            six_r_d_Gamma_5_t_4*six_r_w_1_t_70 + six_r_d_Gamma_5_t_5*six_r_w_1_t_82
+        six_r_d_Gamma_5_t_2*six_r_w_1_t_26 + six_r_d_Gamma_5_t_3*six_r_w_1_t_48 +
+            six_r_d_Gamma_5_t_4*six_r_w_1_t_66 + six_r_d_Gamma_5_t_5*six_r_w_1_t_78
         )
         six_r_d_Gamma_5_in_axes5_x = (
-        six_r_d_Gamma_5_t_3*six_r_w_1_t_50 + six_r_d_Gamma_5_t_4*six_r_w_1_t_68 +
-            six_r_d_Gamma_5_t_5*six_r_w_1_t_80 - six_r_h_5_in_spec5_y
+        six_r_d_Gamma_5_t_3*six_r_w_1_t_46 + six_r_d_Gamma_5_t_4*six_r_w_1_t_64 +
+            six_r_d_Gamma_5_t_5*six_r_w_1_t_76 - six_r_h_5_in_spec5_y
         )
         six_r_d_Gamma_5_in_axes5_y = (
-        six_r_h_5_in_spec5_x + six_r_d_Gamma_5_t*six_r_w_1_t_13 -
-            six_r_d_Gamma_5_t_2*six_r_w_1_t_29 - six_r_d_Gamma_5_t_3*six_r_w_1_t_51 -
-            six_r_d_Gamma_5_t_4*six_r_w_1_t_69 - six_r_d_Gamma_5_t_5*six_r_w_1_t_81
+        six_r_h_5_in_spec5_x + six_r_d_Gamma_5_t*six_r_w_1_t_9 -
+            six_r_d_Gamma_5_t_2*six_r_w_1_t_25 - six_r_d_Gamma_5_t_3*six_r_w_1_t_47 -
+            six_r_d_Gamma_5_t_4*six_r_w_1_t_65 - six_r_d_Gamma_5_t_5*six_r_w_1_t_77
         )
         # (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
         six_r_dalpha_Gamma_4_in_axes5_x = (
@@ -5606,36 +5622,39 @@ def _run_M(m, X, q):
             six_r_L_c_4_2_in_axes1_z*six_r_o_1_t
         )
         # (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*six_r_J_5_in_axes4_yz
-        six_r_d_Gamma_4_t_2 = (
-        inv_six_r_w_1_t_28*(six_r_Jc_4_in_axes4_zz - six_r_d_Gamma_4_t*six_r_w_1_t_15)
+        six_r_d_Gamma_4_t = (
+        six_r_J_5_t*six_r_h_5_in_spec5_x + six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y
         )
+        six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_8*six_r_J_5_in_axes4_yz
         six_r_d_Gamma_4_t_3 = (
-        inv_six_r_w_1_t_49*(six_r_L_c_4_2_in_axes1_z + six_r_d_Gamma_4_t_2*six_r_w_1_t_33 -
-            six_r_d_Gamma_4_t*six_r_w_1_t_18)
+        inv_six_r_w_1_t_24*(six_r_Jc_4_in_axes4_zz - six_r_d_Gamma_4_t_2*six_r_w_1_t_11)
         )
         six_r_d_Gamma_4_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_L_c_4_2_in_axes2_z + six_r_d_Gamma_4_t_2*six_r_w_1_t_39 -
-            six_r_d_Gamma_4_t*six_r_w_1_t_22 - six_r_d_Gamma_4_t_3*six_r_w_1_t_55)
+        inv_six_r_w_1_t_45*(six_r_L_c_4_2_in_axes1_z + six_r_d_Gamma_4_t_3*six_r_w_1_t_29 -
+            six_r_d_Gamma_4_t_2*six_r_w_1_t_14)
         )
         six_r_d_Gamma_4_t_5 = (
-        inv_six_r_w_1_t_79*(six_r_L_c_4_3_in_axes3_z + six_r_d_Gamma_4_t*six_r_w_1_t_25 +
-            six_r_d_Gamma_4_t_2*six_r_w_1_t_44 - six_r_d_Gamma_4_t_3*six_r_w_1_t_61 -
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_73)
+        inv_six_r_w_1_t_63*(six_r_L_c_4_2_in_axes2_z + six_r_d_Gamma_4_t_3*six_r_w_1_t_35 -
+            six_r_d_Gamma_4_t_2*six_r_w_1_t_18 - six_r_d_Gamma_4_t_4*six_r_w_1_t_51)
+        )
+        six_r_d_Gamma_4_t_6 = (
+        inv_six_r_w_1_t_75*(six_r_L_c_4_3_in_axes3_z + six_r_d_Gamma_4_t_2*six_r_w_1_t_21 +
+            six_r_d_Gamma_4_t_3*six_r_w_1_t_40 - six_r_d_Gamma_4_t_4*six_r_w_1_t_57 -
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_69)
         )
         six_r_d_Gamma_4_in_axes5_x = (
-        six_r_d_Gamma_4_t_3*six_r_w_1_t_50 + six_r_d_Gamma_4_t_4*six_r_w_1_t_68 +
-            six_r_d_Gamma_4_t_5*six_r_w_1_t_80 - six_r_J_5_t*six_r_h_5_in_spec5_z
+        six_r_d_Gamma_4_t_4*six_r_w_1_t_46 + six_r_d_Gamma_4_t_5*six_r_w_1_t_64 +
+            six_r_d_Gamma_4_t_6*six_r_w_1_t_76 - six_r_J_5_t*six_r_h_5_in_spec5_z
         )
         six_r_d_Gamma_4_in_axes5_y = (
-        six_r_d_Gamma_4_t*six_r_w_1_t_13 - six_r_d_Gamma_4_t_2*six_r_w_1_t_29 -
-            six_r_d_Gamma_4_t_3*six_r_w_1_t_51 - six_r_d_Gamma_4_t_4*six_r_w_1_t_69 -
-            six_r_d_Gamma_4_t_5*six_r_w_1_t_81 - six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z
+        six_r_d_Gamma_4_t_2*six_r_w_1_t_9 - six_r_d_Gamma_4_t_3*six_r_w_1_t_25 -
+            six_r_d_Gamma_4_t_4*six_r_w_1_t_47 - six_r_d_Gamma_4_t_5*six_r_w_1_t_65 -
+            six_r_d_Gamma_4_t_6*six_r_w_1_t_77 - six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z
         )
         six_r_d_Gamma_4_in_axes5_z = (
-        six_r_J_5_t*six_r_h_5_in_spec5_x + six_r_d_Gamma_4_t_2*six_r_w_1_t_30 +
-            six_r_d_Gamma_4_t_3*six_r_w_1_t_52 + six_r_d_Gamma_4_t_4*six_r_w_1_t_70 +
-            six_r_d_Gamma_4_t_5*six_r_w_1_t_82 + six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y
+        six_r_d_Gamma_4_t + six_r_d_Gamma_4_t_3*six_r_w_1_t_26 +
+            six_r_d_Gamma_4_t_4*six_r_w_1_t_48 + six_r_d_Gamma_4_t_5*six_r_w_1_t_66 +
+            six_r_d_Gamma_4_t_6*six_r_w_1_t_78
         )
         # (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         six_r_dalpha_Gamma_3_t = six_r_D_3_5*six_r_o_5_in_axes5_x
@@ -5668,39 +5687,39 @@ def _run_M(m, X, q):
         six_r_d_Gamma_3_t_3 = (
         six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_y - six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_x
         )
-        six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*six_r_D_3_5
-        six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_15
-        six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(six_r_L_c_4_3_in_axes3_z - six_r_d_Gamma_3_t_5)
-        six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18
+        six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_8*six_r_D_3_5
+        six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_11
+        six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_24*(six_r_L_c_4_3_in_axes3_z - six_r_d_Gamma_3_t_5)
+        six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_14
         six_r_d_Gamma_3_t_8 = (
-        inv_six_r_w_1_t_49*(six_r_L_c_3_2_in_axes1_z + six_r_d_Gamma_3_t_6*six_r_w_1_t_33 -
+        inv_six_r_w_1_t_45*(six_r_L_c_3_2_in_axes1_z + six_r_d_Gamma_3_t_6*six_r_w_1_t_29 -
             six_r_d_Gamma_3_t_7)
         )
-        six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_22
+        six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18
         six_r_d_Gamma_3_t_10 = (
-        inv_six_r_w_1_t_67*(six_r_L_c_3_2_in_axes2_z + six_r_d_Gamma_3_t_6*six_r_w_1_t_39 -
-            six_r_d_Gamma_3_t_9 - six_r_d_Gamma_3_t_8*six_r_w_1_t_55)
+        inv_six_r_w_1_t_63*(six_r_L_c_3_2_in_axes2_z + six_r_d_Gamma_3_t_6*six_r_w_1_t_35 -
+            six_r_d_Gamma_3_t_9 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51)
         )
-        six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25
+        six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_21
         six_r_d_Gamma_3_t_12 = (
-        inv_six_r_w_1_t_79*(six_r_Jc_3_in_axes3_zz + six_r_d_Gamma_3_t_11 +
-            six_r_d_Gamma_3_t_6*six_r_w_1_t_44 - six_r_d_Gamma_3_t_10*six_r_w_1_t_73 -
-            six_r_d_Gamma_3_t_8*six_r_w_1_t_61)
+        inv_six_r_w_1_t_75*(six_r_Jc_3_in_axes3_zz + six_r_d_Gamma_3_t_11 +
+            six_r_d_Gamma_3_t_6*six_r_w_1_t_40 - six_r_d_Gamma_3_t_10*six_r_w_1_t_69 -
+            six_r_d_Gamma_3_t_8*six_r_w_1_t_57)
         )
-        six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_13
+        six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_9
         six_r_d_Gamma_3_in_axes5_x = (
-        six_r_d_Gamma_3_t + six_r_d_Gamma_3_t_10*six_r_w_1_t_68 +
-            six_r_d_Gamma_3_t_12*six_r_w_1_t_80 + six_r_d_Gamma_3_t_8*six_r_w_1_t_50
+        six_r_d_Gamma_3_t + six_r_d_Gamma_3_t_10*six_r_w_1_t_64 +
+            six_r_d_Gamma_3_t_12*six_r_w_1_t_76 + six_r_d_Gamma_3_t_8*six_r_w_1_t_46
         )
         six_r_d_Gamma_3_in_axes5_y = (
-        six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 - six_r_d_Gamma_3_t_10*six_r_w_1_t_69 -
-            six_r_d_Gamma_3_t_12*six_r_w_1_t_81 - six_r_d_Gamma_3_t_6*six_r_w_1_t_29 -
-            six_r_d_Gamma_3_t_8*six_r_w_1_t_51
+        six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 - six_r_d_Gamma_3_t_10*six_r_w_1_t_65 -
+            six_r_d_Gamma_3_t_12*six_r_w_1_t_77 - six_r_d_Gamma_3_t_6*six_r_w_1_t_25 -
+            six_r_d_Gamma_3_t_8*six_r_w_1_t_47
         )
         six_r_d_Gamma_3_in_axes5_z = (
-        six_r_d_Gamma_3_t_3 + six_r_d_Gamma_3_t_10*six_r_w_1_t_70 +
-            six_r_d_Gamma_3_t_12*six_r_w_1_t_82 + six_r_d_Gamma_3_t_6*six_r_w_1_t_30 +
-            six_r_d_Gamma_3_t_8*six_r_w_1_t_52
+        six_r_d_Gamma_3_t_3 + six_r_d_Gamma_3_t_10*six_r_w_1_t_66 +
+            six_r_d_Gamma_3_t_12*six_r_w_1_t_78 + six_r_d_Gamma_3_t_6*six_r_w_1_t_26 +
+            six_r_d_Gamma_3_t_8*six_r_w_1_t_48
         )
         # (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         six_r_dalpha_Gamma_2_in_axes5_x = (
@@ -5721,33 +5740,33 @@ def _run_M(m, X, q):
             six_r_Jc_2_in_axes1_yz*six_r_o_1_t
         )
         # (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(six_r_L_c_4_2_in_axes2_z - six_r_d_Gamma_3_t_5)
+        six_r_d_Gamma_2_t = inv_six_r_w_1_t_24*(six_r_L_c_4_2_in_axes2_z - six_r_d_Gamma_3_t_5)
         six_r_d_Gamma_2_t_2 = (
-        inv_six_r_w_1_t_49*(six_r_Jc_2_in_axes1_yz + six_r_d_Gamma_2_t*six_r_w_1_t_33 -
+        inv_six_r_w_1_t_45*(six_r_Jc_2_in_axes1_yz + six_r_d_Gamma_2_t*six_r_w_1_t_29 -
             six_r_d_Gamma_3_t_7)
         )
         six_r_d_Gamma_2_t_3 = (
-        inv_six_r_w_1_t_67*(six_r_Jc_2_in_axes2_zz + six_r_d_Gamma_2_t*six_r_w_1_t_39 -
-            six_r_d_Gamma_3_t_9 - six_r_d_Gamma_2_t_2*six_r_w_1_t_55)
+        inv_six_r_w_1_t_63*(six_r_Jc_2_in_axes2_zz + six_r_d_Gamma_2_t*six_r_w_1_t_35 -
+            six_r_d_Gamma_3_t_9 - six_r_d_Gamma_2_t_2*six_r_w_1_t_51)
         )
         six_r_d_Gamma_2_t_4 = (
-        inv_six_r_w_1_t_79*(six_r_L_c_3_2_in_axes2_z + six_r_d_Gamma_3_t_11 +
-            six_r_d_Gamma_2_t*six_r_w_1_t_44 - six_r_d_Gamma_2_t_2*six_r_w_1_t_61 -
-            six_r_d_Gamma_2_t_3*six_r_w_1_t_73)
+        inv_six_r_w_1_t_75*(six_r_L_c_3_2_in_axes2_z + six_r_d_Gamma_3_t_11 +
+            six_r_d_Gamma_2_t*six_r_w_1_t_40 - six_r_d_Gamma_2_t_2*six_r_w_1_t_57 -
+            six_r_d_Gamma_2_t_3*six_r_w_1_t_69)
         )
         six_r_d_Gamma_2_in_axes5_x = (
-        six_r_d_Gamma_3_t + six_r_d_Gamma_2_t_2*six_r_w_1_t_50 +
-            six_r_d_Gamma_2_t_3*six_r_w_1_t_68 + six_r_d_Gamma_2_t_4*six_r_w_1_t_80
+        six_r_d_Gamma_3_t + six_r_d_Gamma_2_t_2*six_r_w_1_t_46 +
+            six_r_d_Gamma_2_t_3*six_r_w_1_t_64 + six_r_d_Gamma_2_t_4*six_r_w_1_t_76
         )
         six_r_d_Gamma_2_in_axes5_y = (
-        six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 - six_r_d_Gamma_2_t*six_r_w_1_t_29 -
-            six_r_d_Gamma_2_t_2*six_r_w_1_t_51 - six_r_d_Gamma_2_t_3*six_r_w_1_t_69 -
-            six_r_d_Gamma_2_t_4*six_r_w_1_t_81
+        six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 - six_r_d_Gamma_2_t*six_r_w_1_t_25 -
+            six_r_d_Gamma_2_t_2*six_r_w_1_t_47 - six_r_d_Gamma_2_t_3*six_r_w_1_t_65 -
+            six_r_d_Gamma_2_t_4*six_r_w_1_t_77
         )
         six_r_d_Gamma_2_in_axes5_z = (
-        six_r_d_Gamma_3_t_3 + six_r_d_Gamma_2_t*six_r_w_1_t_30 +
-            six_r_d_Gamma_2_t_2*six_r_w_1_t_52 + six_r_d_Gamma_2_t_3*six_r_w_1_t_70 +
-            six_r_d_Gamma_2_t_4*six_r_w_1_t_82
+        six_r_d_Gamma_3_t_3 + six_r_d_Gamma_2_t*six_r_w_1_t_26 +
+            six_r_d_Gamma_2_t_2*six_r_w_1_t_48 + six_r_d_Gamma_2_t_3*six_r_w_1_t_66 +
+            six_r_d_Gamma_2_t_4*six_r_w_1_t_78
         )
         # (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         six_r_dalpha_Gamma_1_in_axes5_x = (
@@ -5768,37 +5787,37 @@ def _run_M(m, X, q):
             six_r_Jc_1_in_axes1_zz*six_r_o_1_t
         )
         # (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*six_r_D_1_5
+        six_r_d_Gamma_1_t = inv_six_r_w_1_t_8*six_r_D_1_5
         six_r_d_Gamma_1_t_2 = (
-        inv_six_r_w_1_t_28*(six_r_L_c_4_2_in_axes1_z - six_r_d_Gamma_1_t*six_r_w_1_t_15)
+        inv_six_r_w_1_t_24*(six_r_L_c_4_2_in_axes1_z - six_r_d_Gamma_1_t*six_r_w_1_t_11)
         )
         six_r_d_Gamma_1_t_3 = (
-        inv_six_r_w_1_t_49*(six_r_Jc_1_in_axes1_zz + six_r_d_Gamma_1_t_2*six_r_w_1_t_33 -
-            six_r_d_Gamma_1_t*six_r_w_1_t_18)
+        inv_six_r_w_1_t_45*(six_r_Jc_1_in_axes1_zz + six_r_d_Gamma_1_t_2*six_r_w_1_t_29 -
+            six_r_d_Gamma_1_t*six_r_w_1_t_14)
         )
         six_r_d_Gamma_1_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_Jc_2_in_axes1_yz + six_r_d_Gamma_1_t_2*six_r_w_1_t_39 -
-            six_r_d_Gamma_1_t*six_r_w_1_t_22 - six_r_d_Gamma_1_t_3*six_r_w_1_t_55)
+        inv_six_r_w_1_t_63*(six_r_Jc_2_in_axes1_yz + six_r_d_Gamma_1_t_2*six_r_w_1_t_35 -
+            six_r_d_Gamma_1_t*six_r_w_1_t_18 - six_r_d_Gamma_1_t_3*six_r_w_1_t_51)
         )
         six_r_d_Gamma_1_t_5 = (
-        inv_six_r_w_1_t_79*(six_r_L_c_3_2_in_axes1_z + six_r_d_Gamma_1_t*six_r_w_1_t_25 +
-            six_r_d_Gamma_1_t_2*six_r_w_1_t_44 - six_r_d_Gamma_1_t_3*six_r_w_1_t_61 -
-            six_r_d_Gamma_1_t_4*six_r_w_1_t_73)
+        inv_six_r_w_1_t_75*(six_r_L_c_3_2_in_axes1_z + six_r_d_Gamma_1_t*six_r_w_1_t_21 +
+            six_r_d_Gamma_1_t_2*six_r_w_1_t_40 - six_r_d_Gamma_1_t_3*six_r_w_1_t_57 -
+            six_r_d_Gamma_1_t_4*six_r_w_1_t_69)
         )
         six_r_d_Gamma_1_in_axes5_x = (
-        six_r_d_Gamma_1_t_3*six_r_w_1_t_50 + six_r_d_Gamma_1_t_4*six_r_w_1_t_68 +
-            six_r_d_Gamma_1_t_5*six_r_w_1_t_80 + six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_z -
+        six_r_d_Gamma_1_t_3*six_r_w_1_t_46 + six_r_d_Gamma_1_t_4*six_r_w_1_t_64 +
+            six_r_d_Gamma_1_t_5*six_r_w_1_t_76 + six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_z -
             six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_y
         )
         six_r_d_Gamma_1_in_axes5_y = (
-        six_r_d_Gamma_1_t*six_r_w_1_t_13 + six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_x -
-            six_r_d_Gamma_1_t_2*six_r_w_1_t_29 - six_r_d_Gamma_1_t_3*six_r_w_1_t_51 -
-            six_r_d_Gamma_1_t_4*six_r_w_1_t_69 - six_r_d_Gamma_1_t_5*six_r_w_1_t_81 -
+        six_r_d_Gamma_1_t*six_r_w_1_t_9 + six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_x -
+            six_r_d_Gamma_1_t_2*six_r_w_1_t_25 - six_r_d_Gamma_1_t_3*six_r_w_1_t_47 -
+            six_r_d_Gamma_1_t_4*six_r_w_1_t_65 - six_r_d_Gamma_1_t_5*six_r_w_1_t_77 -
             six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_z
         )
         six_r_d_Gamma_1_in_axes5_z = (
-        six_r_d_Gamma_1_t_2*six_r_w_1_t_30 + six_r_d_Gamma_1_t_3*six_r_w_1_t_52 +
-            six_r_d_Gamma_1_t_4*six_r_w_1_t_70 + six_r_d_Gamma_1_t_5*six_r_w_1_t_82 +
+        six_r_d_Gamma_1_t_2*six_r_w_1_t_26 + six_r_d_Gamma_1_t_3*six_r_w_1_t_48 +
+            six_r_d_Gamma_1_t_4*six_r_w_1_t_66 + six_r_d_Gamma_1_t_5*six_r_w_1_t_78 +
             six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_y - six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_x
         )
         # (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
@@ -6158,15 +6177,6 @@ def _run_M(m, X, q):
             axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
             axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz
         )
-        six_r_q_x = (
-        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
-        )
-        six_r_q_y = (
-        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
-        )
-        six_r_q_z = (
-        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
-        )
         six_r_M_ta_t_10 = -six_r_Q_xy*six_r_q_z
         six_r_M_ta_t_11 = six_r_Q_xz*six_r_q_y
         six_r_M_ta_t_12 = six_r_Q_yz*six_r_q_x
@@ -6250,9 +6260,9 @@ def _run_M(m, X, q):
             six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z + six_r_d_G_m2_x*six_r_n_m2_z)
         )
         ok = (
-        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
-            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
+        ok & (abs(six_r_w_1_t_8) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_24) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_45) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_63) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_75) > _TOLERANCE * six_r_size)
         )
         # (M_tt) translational block of M
         M_tt_six_r_xx += six_r_Q_xx
@@ -6338,16 +6348,16 @@ def _run_M(m, X, q):
     return ok, (out_M,)
 
 
-# Z: 5367 mul, 3996 add, 30 div, 30 sqrt, 60 trig
+# Z: 5376 mul, 4002 add, 30 div, 30 sqrt, 60 trig
 def _run_Z(m, X, V, q):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_3 = X[3]
     X_4 = X[4]
@@ -6397,6 +6407,22 @@ def _run_Z(m, X, V, q):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -6405,39 +6431,12 @@ def _run_Z(m, X, V, q):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_six_r_x, Z_t_six_r_y, Z_t_six_r_z, Z_a_six_r_x, Z_a_six_r_y, Z_a_six_r_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -6468,6 +6467,22 @@ def _run_Z(m, X, V, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-h_4) first moment of link 4 about the origin of link 4
+        six_r_e_2_in_axes5_z = cos(six_r_q_4)
+        six_r_h_4_t = sin(six_r_q_4)
+        # (six_r-J_5) inertia tensor of link 5 about the connection point
+        six_r_e_4_in_axes5_x = cos(six_r_q_5)
+        six_r_J_5_t = sin(six_r_q_5)
+        # (six_r-S) from the base point to the connection point
+        six_r_q_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
         six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
@@ -6480,22 +6495,14 @@ def _run_Z(m, X, V, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
-        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = cos(six_r_q_4)
-        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = sin(six_r_q_4)
-        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = cos(six_r_q_5)
-        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
-        six_r_S_dot_t = six_r_c_3*six_r_s_4
-        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
+        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
+        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
+        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -6508,9 +6515,9 @@ def _run_Z(m, X, V, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
-        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
+        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
+        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -6536,15 +6543,6 @@ def _run_Z(m, X, V, q):
         axis_x_six_r_axes5_z = (
         axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
         )
-        six_r_q_x = (
-        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
-        )
-        six_r_q_y = (
-        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
-        )
-        six_r_q_z = (
-        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
-        )
         six_r_S_dot_t_14 = omega_y*six_r_q_z - omega_z*six_r_q_y
         six_r_S_dot_t_15 = omega_z*six_r_q_x - omega_x*six_r_q_z
         six_r_S_dot_t_16 = omega_x*six_r_q_y - omega_y*six_r_q_x
@@ -6564,19 +6562,25 @@ def _run_Z(m, X, V, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
+        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes4_z = (
+        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
+        )
+        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
+        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
+        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_x = (
+        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
+        )
+        six_r_r_3_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
+        )
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -6584,10 +6588,10 @@ def _run_Z(m, X, V, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
+        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
+        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -6596,17 +6600,17 @@ def _run_Z(m, X, V, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
+        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
+        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
+        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -6617,30 +6621,31 @@ def _run_Z(m, X, V, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
+        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
-            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
+        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
+            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
+            six_r_J_5_t*six_r_r_4_in_axes4_z)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -6673,204 +6678,243 @@ def _run_Z(m, X, V, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
+        six_r_end_p1_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
+        )
+        six_r_n_m1_t_11 = (
+        six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_t_12 = (
+        six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_in_axes4_z = (
+        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m1_x = (
+        axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m1_y = (
+        axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_y*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m1_z = (
+        axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y
+        )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
+        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_n_m2_t = (
+        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_t_2 = (
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        six_r_n_m2_x = (
+        axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
+            axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z
+        )
+        six_r_n_m2_y = (
+        axis_z_six_r_axes5_y*six_r_end_p1_in_axes5_y -
+            axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z
+        )
+        six_r_n_m2_z = (
+        axis_z_six_r_axes5_z*six_r_end_p1_in_axes5_y -
+            axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z
+        )
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
-        six_r_w_1_t = (
-        six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        six_r_w_1_t = six_r_n_m1_t_11*six_r_size
+        six_r_w_1_t_2 = six_r_n_m2_t*six_r_size
+        six_r_w_1_t_3 = six_r_n_m1_t_12*six_r_size
+        six_r_w_1_t_4 = six_r_n_m2_t_2*six_r_size
+        six_r_w_1_t_5 = six_r_n_m1_in_axes4_z*six_r_size
+        six_r_w_1_t_6 = six_r_n_m2_in_axes4_z*six_r_size
+        six_r_w_1_t_7 = six_r_end_p1_in_axes5_y*six_r_size
+        six_r_w_1_t_8 = sqrt(six_r_size_t + six_r_w_1_t_7*six_r_w_1_t_7)
+        inv_six_r_w_1_t_8 = 1.0/six_r_w_1_t_8
+        six_r_w_1_t_9 = inv_six_r_w_1_t_8*six_r_platform_joint_offset_x
+        six_r_w_1_t_10 = inv_six_r_w_1_t_8*six_r_w_1_t_7
+        six_r_w_1_t_11 = six_r_w_1_t_10*six_r_w_1_t_6
+        six_r_w_1_t_12 = six_r_w_1_t_11*six_r_w_1_t_9
+        six_r_w_1_t_13 = six_r_w_1_t_6 - six_r_w_1_t_10*six_r_w_1_t_11
+        six_r_w_1_t_14 = six_r_v_1_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_10*six_r_w_1_t_2
+        six_r_w_1_t_15 = six_r_v_1_in_axes5_y - six_r_w_1_t_14*six_r_w_1_t_9
+        six_r_w_1_t_16 = six_r_w_1_t_2 + six_r_w_1_t_10*six_r_w_1_t_14
+        six_r_w_1_t_17 = six_r_w_1_t_10*six_r_w_1_t_4
+        six_r_w_1_t_18 = six_r_v_2_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_v_2_in_axes5_y - six_r_w_1_t_18*six_r_w_1_t_9
+        six_r_w_1_t_20 = six_r_w_1_t_4 + six_r_w_1_t_10*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_w_1_t_17 - six_r_v_3_in_axes5_y*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_3_in_axes5_y + six_r_w_1_t_21*six_r_w_1_t_9
+        six_r_w_1_t_23 = six_r_w_1_t_4 - six_r_w_1_t_10*six_r_w_1_t_21
+        six_r_w_1_t_24 = (
+        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_13*six_r_w_1_t_13 + six_r_w_1_t_5*six_r_w_1_t_5)
         )
-        six_r_w_1_t_2 = (
-        six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        inv_six_r_w_1_t_24 = 1.0/six_r_w_1_t_24
+        six_r_w_1_t_25 = inv_six_r_w_1_t_24*six_r_w_1_t_12
+        six_r_w_1_t_26 = inv_six_r_w_1_t_24*six_r_v_4_in_axes5_z
+        six_r_w_1_t_27 = inv_six_r_w_1_t_24*six_r_w_1_t_5
+        six_r_w_1_t_28 = inv_six_r_w_1_t_24*six_r_w_1_t_13
+        six_r_w_1_t_29 = (
+        six_r_w_1_t*six_r_w_1_t_27 + six_r_w_1_t_15*six_r_w_1_t_25 + six_r_w_1_t_16*six_r_w_1_t_28
+            - six_r_v_1_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_3 = (
-        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_30 = six_r_w_1_t_25*six_r_w_1_t_29 - six_r_w_1_t_15
+        six_r_w_1_t_31 = six_r_v_1_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_29
+        six_r_w_1_t_32 = six_r_w_1_t_27*six_r_w_1_t_29 - six_r_w_1_t
+        six_r_w_1_t_33 = six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_16
+        six_r_w_1_t_34 = six_r_w_1_t_27*six_r_w_1_t_3
+        six_r_w_1_t_35 = (
+        six_r_w_1_t_34 + six_r_w_1_t_19*six_r_w_1_t_25 + six_r_w_1_t_20*six_r_w_1_t_28 -
+            six_r_v_2_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_36 = six_r_w_1_t_25*six_r_w_1_t_35 - six_r_w_1_t_19
+        six_r_w_1_t_37 = six_r_v_2_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_35
+        six_r_w_1_t_38 = six_r_w_1_t_27*six_r_w_1_t_35 - six_r_w_1_t_3
+        six_r_w_1_t_39 = six_r_w_1_t_28*six_r_w_1_t_35 - six_r_w_1_t_20
+        six_r_w_1_t_40 = (
+        six_r_w_1_t_34 + six_r_w_1_t_22*six_r_w_1_t_25 + six_r_w_1_t_23*six_r_w_1_t_28 -
+            six_r_v_3_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_5 = six_r_size*six_r_w_1_t
-        six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
-        six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
-        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
-        six_r_w_1_t_9 = (
-        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
+        six_r_w_1_t_41 = six_r_w_1_t_25*six_r_w_1_t_40 - six_r_w_1_t_22
+        six_r_w_1_t_42 = six_r_v_3_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_40
+        six_r_w_1_t_43 = six_r_w_1_t_27*six_r_w_1_t_40 - six_r_w_1_t_3
+        six_r_w_1_t_44 = six_r_w_1_t_28*six_r_w_1_t_40 - six_r_w_1_t_23
+        six_r_w_1_t_45 = (
+        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_30*six_r_w_1_t_30 +
+            six_r_w_1_t_31*six_r_w_1_t_31 + six_r_w_1_t_32*six_r_w_1_t_32 +
+            six_r_w_1_t_33*six_r_w_1_t_33)
         )
-        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
-        six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
-        six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
-        inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
-        six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x
-        six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11
-        six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14
-        six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15
-        six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15
-        six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_14*six_r_w_1_t_6
-        six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18
-        six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18
-        six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8
-        six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21
-        six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22
-        six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22
-        six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13
-        six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25
-        six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25
-        six_r_w_1_t_28 = (
-        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_16*six_r_w_1_t_16 +
-            six_r_w_1_t_17*six_r_w_1_t_17 + six_r_w_1_t_9*six_r_w_1_t_9)
+        inv_six_r_w_1_t_45 = 1.0/six_r_w_1_t_45
+        six_r_w_1_t_46 = inv_six_r_w_1_t_45*six_r_v_1_in_axes5_x
+        six_r_w_1_t_47 = inv_six_r_w_1_t_45*six_r_w_1_t_30
+        six_r_w_1_t_48 = inv_six_r_w_1_t_45*six_r_w_1_t_31
+        six_r_w_1_t_49 = inv_six_r_w_1_t_45*six_r_w_1_t_32
+        six_r_w_1_t_50 = inv_six_r_w_1_t_45*six_r_w_1_t_33
+        six_r_w_1_t_51 = (
+        six_r_v_2_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_36*six_r_w_1_t_47 +
+            six_r_w_1_t_37*six_r_w_1_t_48 + six_r_w_1_t_38*six_r_w_1_t_49 +
+            six_r_w_1_t_39*six_r_w_1_t_50
         )
-        inv_six_r_w_1_t_28 = 1.0/six_r_w_1_t_28
-        six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16
-        six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z
-        six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9
-        six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17
-        six_r_w_1_t_33 = (
-        six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32 +
-            six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_52 = six_r_v_2_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_51
+        six_r_w_1_t_53 = six_r_w_1_t_36 - six_r_w_1_t_47*six_r_w_1_t_51
+        six_r_w_1_t_54 = six_r_w_1_t_37 - six_r_w_1_t_48*six_r_w_1_t_51
+        six_r_w_1_t_55 = six_r_w_1_t_38 - six_r_w_1_t_49*six_r_w_1_t_51
+        six_r_w_1_t_56 = six_r_w_1_t_39 - six_r_w_1_t_50*six_r_w_1_t_51
+        six_r_w_1_t_57 = (
+        six_r_v_3_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_41*six_r_w_1_t_47 +
+            six_r_w_1_t_42*six_r_w_1_t_48 + six_r_w_1_t_43*six_r_w_1_t_49 +
+            six_r_w_1_t_44*six_r_w_1_t_50
         )
-        six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19
-        six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33
-        six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5
-        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20
-        six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7
-        six_r_w_1_t_39 = (
-        six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32 -
-            six_r_v_2_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_58 = six_r_v_3_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_57
+        six_r_w_1_t_59 = six_r_w_1_t_41 - six_r_w_1_t_47*six_r_w_1_t_57
+        six_r_w_1_t_60 = six_r_w_1_t_42 - six_r_w_1_t_48*six_r_w_1_t_57
+        six_r_w_1_t_61 = six_r_w_1_t_43 - six_r_w_1_t_49*six_r_w_1_t_57
+        six_r_w_1_t_62 = six_r_w_1_t_44 - six_r_w_1_t_50*six_r_w_1_t_57
+        six_r_w_1_t_63 = (
+        sqrt(six_r_w_1_t_52*six_r_w_1_t_52 + six_r_w_1_t_53*six_r_w_1_t_53 +
+            six_r_w_1_t_54*six_r_w_1_t_54 + six_r_w_1_t_55*six_r_w_1_t_55 +
+            six_r_w_1_t_56*six_r_w_1_t_56)
         )
-        six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23
-        six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39
-        six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7
-        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24
-        six_r_w_1_t_44 = (
-        six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32 -
-            six_r_v_3_in_axes5_z*six_r_w_1_t_30
+        inv_six_r_w_1_t_63 = 1.0/six_r_w_1_t_63
+        six_r_w_1_t_64 = inv_six_r_w_1_t_63*six_r_w_1_t_52
+        six_r_w_1_t_65 = inv_six_r_w_1_t_63*six_r_w_1_t_53
+        six_r_w_1_t_66 = inv_six_r_w_1_t_63*six_r_w_1_t_54
+        six_r_w_1_t_67 = inv_six_r_w_1_t_63*six_r_w_1_t_55
+        six_r_w_1_t_68 = inv_six_r_w_1_t_63*six_r_w_1_t_56
+        six_r_w_1_t_69 = (
+        six_r_w_1_t_58*six_r_w_1_t_64 + six_r_w_1_t_59*six_r_w_1_t_65 +
+            six_r_w_1_t_60*six_r_w_1_t_66 + six_r_w_1_t_61*six_r_w_1_t_67 +
+            six_r_w_1_t_62*six_r_w_1_t_68
         )
-        six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26
-        six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44
-        six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7
-        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27
-        six_r_w_1_t_49 = (
-        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_34*six_r_w_1_t_34 +
-            six_r_w_1_t_35*six_r_w_1_t_35 + six_r_w_1_t_36*six_r_w_1_t_36 +
-            six_r_w_1_t_37*six_r_w_1_t_37)
+        six_r_w_1_t_70 = six_r_w_1_t_58 - six_r_w_1_t_64*six_r_w_1_t_69
+        six_r_w_1_t_71 = six_r_w_1_t_59 - six_r_w_1_t_65*six_r_w_1_t_69
+        six_r_w_1_t_72 = six_r_w_1_t_60 - six_r_w_1_t_66*six_r_w_1_t_69
+        six_r_w_1_t_73 = six_r_w_1_t_61 - six_r_w_1_t_67*six_r_w_1_t_69
+        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_69
+        six_r_w_1_t_75 = (
+        sqrt(six_r_w_1_t_70*six_r_w_1_t_70 + six_r_w_1_t_71*six_r_w_1_t_71 +
+            six_r_w_1_t_72*six_r_w_1_t_72 + six_r_w_1_t_73*six_r_w_1_t_73 +
+            six_r_w_1_t_74*six_r_w_1_t_74)
         )
-        inv_six_r_w_1_t_49 = 1.0/six_r_w_1_t_49
-        six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x
-        six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34
-        six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35
-        six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36
-        six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37
-        six_r_w_1_t_55 = (
-        six_r_v_2_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_40*six_r_w_1_t_51 +
-            six_r_w_1_t_41*six_r_w_1_t_52 + six_r_w_1_t_42*six_r_w_1_t_53 +
-            six_r_w_1_t_43*six_r_w_1_t_54
-        )
-        six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55
-        six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55
-        six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55
-        six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55
-        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55
-        six_r_w_1_t_61 = (
-        six_r_v_3_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_45*six_r_w_1_t_51 +
-            six_r_w_1_t_46*six_r_w_1_t_52 + six_r_w_1_t_47*six_r_w_1_t_53 +
-            six_r_w_1_t_48*six_r_w_1_t_54
-        )
-        six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61
-        six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61
-        six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61
-        six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61
-        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61
-        six_r_w_1_t_67 = (
-        sqrt(six_r_w_1_t_56*six_r_w_1_t_56 + six_r_w_1_t_57*six_r_w_1_t_57 +
-            six_r_w_1_t_58*six_r_w_1_t_58 + six_r_w_1_t_59*six_r_w_1_t_59 +
-            six_r_w_1_t_60*six_r_w_1_t_60)
-        )
-        inv_six_r_w_1_t_67 = 1.0/six_r_w_1_t_67
-        six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56
-        six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57
-        six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58
-        six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59
-        six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60
-        six_r_w_1_t_73 = (
-        six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69 +
-            six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72
-        )
-        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73
-        six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73
-        six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73
-        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73
-        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73
-        six_r_w_1_t_79 = (
-        sqrt(six_r_w_1_t_74*six_r_w_1_t_74 + six_r_w_1_t_75*six_r_w_1_t_75 +
-            six_r_w_1_t_76*six_r_w_1_t_76 + six_r_w_1_t_77*six_r_w_1_t_77 +
-            six_r_w_1_t_78*six_r_w_1_t_78)
-        )
+        inv_six_r_w_1_t_75 = 1.0/six_r_w_1_t_75
+        six_r_w_1_t_76 = inv_six_r_w_1_t_75*six_r_w_1_t_70
+        six_r_w_1_t_77 = inv_six_r_w_1_t_75*six_r_w_1_t_71
+        six_r_w_1_t_78 = inv_six_r_w_1_t_75*six_r_w_1_t_72
+        # (six_r-m1_w_1) moment part 1 of reciprocal wrench 1
+        six_r_m1_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_73
+        # (six_r-m2_w_1) moment part 2 of reciprocal wrench 1
+        six_r_m2_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_74
         # (six_r-eta_1) rate at which the joints turn along moment direction 1
-        six_r_eta_1 = (
-        omega_x*(axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_x*six_r_n_m2_in_axes5_z) +
-            omega_y*(axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_y*six_r_n_m2_in_axes5_z) +
-            omega_z*(axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_z*six_r_n_m2_in_axes5_z)
+        six_r_eta_1 = omega_x*six_r_n_m1_x + omega_y*six_r_n_m1_y + omega_z*six_r_n_m1_z
+        six_r_omega_in_axes5_x = (
+        axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z
+        )
+        six_r_omega_in_axes5_y = (
+        axis_y_six_r_axes5_x*omega_x + axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z
+        )
+        six_r_eta_1_2 = (
+        six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
+            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_x
         )
         # (six_r-eta_2) rate at which the joints turn along moment direction 2
-        six_r_eta_2 = (
-        omega_x*(axis_z_six_r_axes5_x*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z) +
-            omega_y*(axis_z_six_r_axes5_y*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z) +
-            omega_z*(axis_z_six_r_axes5_z*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z)
+        six_r_eta_2 = omega_x*six_r_n_m2_x + omega_y*six_r_n_m2_y + omega_z*six_r_n_m2_z
+        six_r_omega_in_axes5_z = (
+        axis_z_six_r_axes5_x*omega_x + axis_z_six_r_axes5_y*omega_y + axis_z_six_r_axes5_z*omega_z
+        )
+        six_r_eta_2_t = (
+        six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
+            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_z
         )
         # (six_r-qd_1) rate of joint 1
-        inv_six_r_w_1_t_79 = 1.0/six_r_w_1_t_79
-        six_r_qd_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_74
-        six_r_qd_1_t_2 = inv_six_r_w_1_t_79*six_r_w_1_t_75
-        six_r_qd_1_t_3 = inv_six_r_w_1_t_79*six_r_w_1_t_76
-        six_r_qd_1_t_4 = inv_six_r_w_1_t_79*six_r_w_1_t_77
-        six_r_qd_1_t_5 = inv_six_r_w_1_t_79*six_r_w_1_t_78
-        six_r_qd_1_t_6 = six_r_eta_1*six_r_size
-        six_r_qd_1_t_7 = six_r_eta_2*six_r_size
-        six_r_qd_1_t_8 = (
-        inv_six_r_w_1_t_79*(six_r_S_dot_in_axes5_x*six_r_qd_1_t +
-            six_r_S_dot_in_axes5_z*six_r_qd_1_t_3 + six_r_qd_1_t_4*six_r_qd_1_t_6 +
-            six_r_qd_1_t_5*six_r_qd_1_t_7 - six_r_S_dot_in_axes5_y*six_r_qd_1_t_2)
+        six_r_qd_1_t = six_r_eta_1*six_r_size
+        six_r_qd_1_t_2 = six_r_eta_2*six_r_size
+        six_r_qd_1_t_3 = six_r_S_dot_in_axes5_x*six_r_w_1_t_46
+        six_r_qd_1_t_4 = six_r_S_dot_in_axes5_y*six_r_w_1_t_47
+        six_r_qd_1_t_5 = six_r_S_dot_in_axes5_z*six_r_w_1_t_48
+        six_r_qd_1_t_6 = six_r_S_dot_in_axes5_x*six_r_w_1_t_64
+        six_r_qd_1_t_7 = six_r_S_dot_in_axes5_y*six_r_w_1_t_65
+        six_r_qd_1_t_8 = six_r_S_dot_in_axes5_z*six_r_w_1_t_66
+        six_r_qd_1_t_9 = six_r_S_dot_in_axes5_x*six_r_w_1_t_76
+        six_r_qd_1_t_10 = six_r_S_dot_in_axes5_y*six_r_w_1_t_77
+        six_r_qd_1_t_11 = six_r_S_dot_in_axes5_z*six_r_w_1_t_78
+        six_r_qd_1_t_12 = (
+        inv_six_r_w_1_t_75*(six_r_qd_1_t_11 + six_r_qd_1_t_9 + six_r_m1_w_1_t*six_r_qd_1_t +
+            six_r_m2_w_1_t*six_r_qd_1_t_2 - six_r_qd_1_t_10)
         )
-        six_r_qd_1_t_9 = (
-        inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_x*six_r_w_1_t_68 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_70 + six_r_qd_1_t_6*six_r_w_1_t_71 +
-            six_r_qd_1_t_7*six_r_w_1_t_72 - six_r_S_dot_in_axes5_y*six_r_w_1_t_69 -
-            six_r_qd_1_t_8*six_r_w_1_t_73)
+        six_r_qd_1_t_13 = (
+        inv_six_r_w_1_t_63*(six_r_qd_1_t_6 + six_r_qd_1_t_8 + six_r_qd_1_t*six_r_w_1_t_67 +
+            six_r_qd_1_t_2*six_r_w_1_t_68 - six_r_qd_1_t_7 - six_r_qd_1_t_12*six_r_w_1_t_69)
         )
-        six_r_qd_1_t_10 = (
-        inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 + six_r_qd_1_t_8*six_r_w_1_t_61
-            + six_r_qd_1_t_9*six_r_w_1_t_55 - six_r_S_dot_in_axes5_x*six_r_w_1_t_50 -
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_52 - six_r_qd_1_t_6*six_r_w_1_t_53 -
-            six_r_qd_1_t_7*six_r_w_1_t_54)
+        six_r_qd_1_t_14 = (
+        inv_six_r_w_1_t_45*(six_r_qd_1_t_4 + six_r_qd_1_t_12*six_r_w_1_t_57 +
+            six_r_qd_1_t_13*six_r_w_1_t_51 - six_r_qd_1_t_3 - six_r_qd_1_t_5 -
+            six_r_qd_1_t*six_r_w_1_t_49 - six_r_qd_1_t_2*six_r_w_1_t_50)
         )
         # (six_r-qd_4) rate of joint 4
+        six_r_qd_4_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_25
+        six_r_qd_4_t_2 = six_r_S_dot_in_axes5_z*six_r_w_1_t_26
         six_r_qd_4 = (
-        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_z*six_r_w_1_t_30 + six_r_qd_1_t_6*six_r_w_1_t_31
-            + six_r_qd_1_t_7*six_r_w_1_t_32 + six_r_qd_1_t_8*six_r_w_1_t_44 +
-            six_r_qd_1_t_9*six_r_w_1_t_39 - six_r_S_dot_in_axes5_y*six_r_w_1_t_29 -
-            six_r_qd_1_t_10*six_r_w_1_t_33)
+        inv_six_r_w_1_t_24*(six_r_qd_4_t_2 + six_r_qd_1_t*six_r_w_1_t_27 +
+            six_r_qd_1_t_12*six_r_w_1_t_40 + six_r_qd_1_t_13*six_r_w_1_t_35 +
+            six_r_qd_1_t_2*six_r_w_1_t_28 - six_r_qd_4_t - six_r_qd_1_t_14*six_r_w_1_t_29)
         )
         # (six_r-qd_5) rate of joint 5
+        six_r_qd_5_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_9
         six_r_qd_5 = (
-        inv_six_r_w_1_t_12*(six_r_S_dot_in_axes5_y*six_r_w_1_t_13 + six_r_qd_1_t_10*six_r_w_1_t_18
-            + six_r_qd_1_t_7*six_r_w_1_t_14 + six_r_qd_1_t_8*six_r_w_1_t_25 -
-            six_r_qd_1_t_9*six_r_w_1_t_22 - six_r_qd_4*six_r_w_1_t_15)
+        inv_six_r_w_1_t_8*(six_r_qd_5_t + six_r_qd_1_t_12*six_r_w_1_t_21 +
+            six_r_qd_1_t_14*six_r_w_1_t_14 + six_r_qd_1_t_2*six_r_w_1_t_10 -
+            six_r_qd_1_t_13*six_r_w_1_t_18 - six_r_qd_4*six_r_w_1_t_11)
         )
         # (six_r-omega_1) angular velocity of link 1
-        six_r_omega_1_in_axes2_x = -six_r_c_2*six_r_qd_1_t_10
-        six_r_omega_1_in_axes2_y = six_r_qd_1_t_10*six_r_s_2
-        six_r_omega_1_t = six_r_e_1_in_axes5_x*six_r_qd_1_t_10
-        six_r_omega_1_t_2 = six_r_e_1_in_axes5_y*six_r_qd_1_t_10
-        six_r_omega_1_t_3 = six_r_e_1_in_axes5_z*six_r_qd_1_t_10
+        six_r_omega_1_in_axes2_x = -six_r_c_2*six_r_qd_1_t_14
+        six_r_omega_1_in_axes2_y = six_r_qd_1_t_14*six_r_s_2
+        six_r_omega_1_t = six_r_e_1_in_axes5_x*six_r_qd_1_t_14
+        six_r_omega_1_t_2 = six_r_e_1_in_axes5_y*six_r_qd_1_t_14
+        six_r_omega_1_t_3 = six_r_e_1_in_axes5_z*six_r_qd_1_t_14
         # (six_r-W_1) centripetal tensor of link 1
         six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2
         six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3
@@ -6882,27 +6926,27 @@ def _run_Z(m, X, V, q):
         six_r_omega_2_in_axes3_y = (
         six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
         )
-        six_r_omega_2_in_axes5_x = six_r_e_2_in_axes5_x*six_r_qd_1_t_9 - six_r_omega_1_t
-        six_r_omega_2_in_axes5_y = six_r_e_2_in_axes5_y*six_r_qd_1_t_9 - six_r_omega_1_t_2
-        six_r_omega_2_in_axes5_z = six_r_c_4*six_r_qd_1_t_9 - six_r_omega_1_t_3
+        six_r_omega_2_in_axes5_x = six_r_e_2_in_axes5_x*six_r_qd_1_t_13 - six_r_omega_1_t
+        six_r_omega_2_in_axes5_y = six_r_e_2_in_axes5_y*six_r_qd_1_t_13 - six_r_omega_1_t_2
+        six_r_omega_2_in_axes5_z = six_r_e_2_in_axes5_z*six_r_qd_1_t_13 - six_r_omega_1_t_3
         # (six_r-W_2) centripetal tensor of link 2
-        six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_9
+        six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_13
         six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y
         six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y
         six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z
         six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z
         # (six_r-omega_3) angular velocity of link 3
-        six_r_omega_3_in_axes3_z = six_r_qd_1_t_8 + six_r_qd_1_t_9
+        six_r_omega_3_in_axes3_z = six_r_qd_1_t_12 + six_r_qd_1_t_13
         six_r_omega_3_in_axes4_x = (
-        six_r_omega_3_in_axes3_z*six_r_s_4 - six_r_c_4*six_r_omega_2_in_axes3_x
+        six_r_h_4_t*six_r_omega_3_in_axes3_z - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x
         )
         six_r_omega_3_in_axes4_y = (
-        six_r_c_4*six_r_omega_3_in_axes3_z + six_r_omega_2_in_axes3_x*six_r_s_4
+        six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z + six_r_h_4_t*six_r_omega_2_in_axes3_x
         )
-        six_r_omega_3_t = six_r_omega_3_in_axes4_x*six_r_s_5
-        six_r_omega_3_t_2 = six_r_c_5*six_r_omega_3_in_axes4_x
-        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_2_in_axes3_y
-        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_2_in_axes3_y*six_r_s_5
+        six_r_omega_3_t = six_r_J_5_t*six_r_omega_3_in_axes4_x
+        six_r_omega_3_t_2 = six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x
+        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y
+        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_J_5_t*six_r_omega_2_in_axes3_y
         # (six_r-W_3) centripetal tensor of link 3
         six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x
         six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z
@@ -6913,8 +6957,8 @@ def _run_Z(m, X, V, q):
         six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y
         # (six_r-omega_4) angular velocity of link 4
         six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4
-        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_4_in_axes4_z
-        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_4_in_axes4_z*six_r_s_5
+        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z
+        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_J_5_t*six_r_omega_4_in_axes4_z
         # (six_r-W_4) centripetal tensor of link 4
         six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y
         six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z
@@ -6945,35 +6989,39 @@ def _run_Z(m, X, V, q):
             axis_z_six_r_axes5_z*six_r_u_1_z
         )
         # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_9
+        six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_13
         six_r_zeta_2_in_axes3_x = (
         six_r_W_2_in_axes2_yz*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y
         )
         six_r_zeta_2_in_axes3_y = (
         six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
         )
-        six_r_zeta_2_t = six_r_c_4*six_r_zeta_2_in_axes3_x
-        six_r_zeta_2_in_axes5_z = six_r_s_4*six_r_zeta_2_in_axes3_x
-        six_r_zeta_2_in_axes5_x = six_r_c_5*six_r_zeta_2_in_axes3_y - six_r_s_5*six_r_zeta_2_t
-        six_r_zeta_2_in_axes5_y = -six_r_c_5*six_r_zeta_2_t - six_r_s_5*six_r_zeta_2_in_axes3_y
+        six_r_zeta_2_t = six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_z = six_r_h_4_t*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_x = (
+        six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y - six_r_J_5_t*six_r_zeta_2_t
+        )
+        six_r_zeta_2_in_axes5_y = (
+        -six_r_J_5_t*six_r_zeta_2_in_axes3_y - six_r_e_4_in_axes5_x*six_r_zeta_2_t
+        )
         # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_8
-        six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_8
+        six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_12
+        six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_12
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
         six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x
         six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t
-        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_c_4
-        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_s_4
+        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_e_2_in_axes5_z
+        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_h_4_t
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
         six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4
         six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
         six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t
         six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t
-        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_c_5
-        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*six_r_s_5
-        six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*six_r_s_5
-        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_c_5 - six_r_beta_4_t_2
+        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_e_4_in_axes5_x
+        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_J_5_t*six_r_beta_4_in_axes4_x
+        six_r_beta_4_t_2 = six_r_J_5_t*six_r_beta_3_in_axes3_y
+        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_e_4_in_axes5_x - six_r_beta_4_t_2
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
         six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5
         six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5
@@ -6987,26 +7035,26 @@ def _run_Z(m, X, V, q):
         six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
         six_r_bias_t_4 = six_r_bias_t_3*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
         six_r_bias_t_5 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t_3*six_r_s_3
-        six_r_bias_t_6 = six_r_bias_t_4*six_r_c_4
-        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_s_4
-        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_c_5 - six_r_bias_t_6*six_r_s_5
-        six_r_d_2_in_axes5_y = -six_r_bias_t_5*six_r_s_5 - six_r_bias_t_6*six_r_c_5
+        six_r_bias_t_6 = six_r_bias_t_4*six_r_e_2_in_axes5_z
+        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_h_4_t
+        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_6
+        six_r_d_2_in_axes5_y = -six_r_J_5_t*six_r_bias_t_5 - six_r_bias_t_6*six_r_e_4_in_axes5_x
         six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t
         six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2
         six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3
         six_r_bias_t_10 = six_r_joint3_offset_x*six_r_s_3
         six_r_bias_t_11 = six_r_c_3*six_r_joint3_offset_x
-        six_r_bias_t_12 = six_r_bias_t_10*six_r_c_4
-        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_s_4
-        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_c_5 - six_r_bias_t_12*six_r_s_5
-        six_r_d_3_in_axes5_y = -six_r_bias_t_11*six_r_s_5 - six_r_bias_t_12*six_r_c_5
+        six_r_bias_t_12 = six_r_bias_t_10*six_r_e_2_in_axes5_z
+        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_h_4_t
+        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_12
+        six_r_d_3_in_axes5_y = -six_r_J_5_t*six_r_bias_t_11 - six_r_bias_t_12*six_r_e_4_in_axes5_x
         six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
         six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
         six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
-        six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x
-        six_r_bias_t_16 = six_r_joint4_offset_x*six_r_s_5
-        six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x
-        six_r_bias_t_17 = six_r_joint5_offset_x*six_r_s_5
+        six_r_d_4_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint4_offset_x
+        six_r_bias_t_16 = six_r_J_5_t*six_r_joint4_offset_x
+        six_r_d_5_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint5_offset_x
+        six_r_bias_t_17 = six_r_J_5_t*six_r_joint5_offset_x
         six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y
         six_r_bias_in_axes5_x = (
         six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y + six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
@@ -7035,12 +7083,12 @@ def _run_Z(m, X, V, q):
         six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_c_5 +
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_e_4_in_axes5_x +
             six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
             six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
             six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
             six_r_beta_5_in_axes5_y) - six_r_bias_t_16*(six_r_beta_4_t +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*six_r_s_5) -
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_J_5_t*six_r_beta_3_t) -
             six_r_bias_t_17*(six_r_beta_4_in_axes5_x +
             six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
             six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
@@ -7051,29 +7099,16 @@ def _run_Z(m, X, V, q):
         six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y
         six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z
         # (six_r-nd_m1) rate of moment direction 1
-        six_r_omega_in_axes5_x = (
-        axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z
-        )
-        six_r_omega_in_axes5_y = (
-        axis_y_six_r_axes5_x*omega_x + axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z
-        )
-        six_r_omega_in_axes5_z = (
-        axis_z_six_r_axes5_x*omega_x + axis_z_six_r_axes5_y*omega_y + axis_z_six_r_axes5_z*omega_z
-        )
         six_r_nd_m1_t = (
         six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_z -
             six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_x
         )
         six_r_nd_m1_in_axes5_x = -six_r_nd_m1_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x
-        six_r_nd_m1_in_axes5_y = (
-        six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
-            six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_z
-        )
+        six_r_nd_m1_in_axes5_y = six_r_eta_2_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y
         # (six_r-nu_1) bias of the angular acceleration along moment direction 1
-        six_r_nu_1_t = six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y
+        six_r_nu_1_t = six_r_end_p1_in_axes5_y*six_r_omega_4_in_axes5_y
         six_r_nu_1_t_2 = (
-        six_r_beta_5_in_axes5_x*six_r_n_m2_in_axes5_z -
+        six_r_beta_5_in_axes5_x*six_r_end_p1_in_axes5_y -
             six_r_beta_5_in_axes5_y*six_r_n_m1_in_axes5_y
         )
         six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - six_r_omega_in_axes5_x
@@ -7085,16 +7120,12 @@ def _run_Z(m, X, V, q):
         )
         six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6
         # (six_r-nd_m2) rate of moment direction 2
-        six_r_nd_m2_in_axes5_y = (
-        six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
-            six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_x
-        )
+        six_r_nd_m2_in_axes5_y = six_r_eta_1_2 - six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y
         six_r_nd_m2_in_axes5_z = six_r_nd_m1_t - six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z
         # (six_r-nu_2) bias of the angular acceleration along moment direction 2
         six_r_nu_2_t = (
         six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_y*six_r_n_m2_in_axes5_z
+            six_r_beta_4_in_axes4_y*six_r_end_p1_in_axes5_y
         )
         six_r_nu_2_t_2 = (
         six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 + six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
@@ -7105,27 +7136,27 @@ def _run_Z(m, X, V, q):
         six_r_qdd_1_o_t = six_r_nu_1*six_r_size
         six_r_qdd_1_o_t_2 = six_r_nu_2*six_r_size
         six_r_qdd_1_o_t_3 = (
-        inv_six_r_w_1_t_79*(six_r_qd_1_t*six_r_rel_o_in_axes5_x +
-            six_r_qd_1_t_3*six_r_rel_o_in_axes5_z + six_r_qd_1_t_4*six_r_qdd_1_o_t +
-            six_r_qd_1_t_5*six_r_qdd_1_o_t_2 - six_r_qd_1_t_2*six_r_rel_o_in_axes5_y)
+        inv_six_r_w_1_t_75*(six_r_m1_w_1_t*six_r_qdd_1_o_t + six_r_m2_w_1_t*six_r_qdd_1_o_t_2 +
+            six_r_rel_o_in_axes5_x*six_r_w_1_t_76 + six_r_rel_o_in_axes5_z*six_r_w_1_t_78 -
+            six_r_rel_o_in_axes5_y*six_r_w_1_t_77)
         )
         six_r_qdd_1_o_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_qdd_1_o_t*six_r_w_1_t_71 + six_r_qdd_1_o_t_2*six_r_w_1_t_72 +
-            six_r_rel_o_in_axes5_x*six_r_w_1_t_68 + six_r_rel_o_in_axes5_z*six_r_w_1_t_70 -
-            six_r_qdd_1_o_t_3*six_r_w_1_t_73 - six_r_rel_o_in_axes5_y*six_r_w_1_t_69)
+        inv_six_r_w_1_t_63*(six_r_qdd_1_o_t*six_r_w_1_t_67 + six_r_qdd_1_o_t_2*six_r_w_1_t_68 +
+            six_r_rel_o_in_axes5_x*six_r_w_1_t_64 + six_r_rel_o_in_axes5_z*six_r_w_1_t_66 -
+            six_r_qdd_1_o_t_3*six_r_w_1_t_69 - six_r_rel_o_in_axes5_y*six_r_w_1_t_65)
         )
         six_r_qdd_1_o_t_5 = (
-        inv_six_r_w_1_t_49*(six_r_qdd_1_o_t_3*six_r_w_1_t_61 + six_r_qdd_1_o_t_4*six_r_w_1_t_55 +
-            six_r_rel_o_in_axes5_y*six_r_w_1_t_51 - six_r_qdd_1_o_t*six_r_w_1_t_53 -
-            six_r_qdd_1_o_t_2*six_r_w_1_t_54 - six_r_rel_o_in_axes5_x*six_r_w_1_t_50 -
-            six_r_rel_o_in_axes5_z*six_r_w_1_t_52)
+        inv_six_r_w_1_t_45*(six_r_qdd_1_o_t_3*six_r_w_1_t_57 + six_r_qdd_1_o_t_4*six_r_w_1_t_51 +
+            six_r_rel_o_in_axes5_y*six_r_w_1_t_47 - six_r_qdd_1_o_t*six_r_w_1_t_49 -
+            six_r_qdd_1_o_t_2*six_r_w_1_t_50 - six_r_rel_o_in_axes5_x*six_r_w_1_t_46 -
+            six_r_rel_o_in_axes5_z*six_r_w_1_t_48)
         )
         # (six_r-qdd_4_o) remainder of: acceleration of joint 4
         six_r_qdd_4_o = (
-        inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*six_r_w_1_t_31 + six_r_qdd_1_o_t_2*six_r_w_1_t_32 +
-            six_r_qdd_1_o_t_3*six_r_w_1_t_44 + six_r_qdd_1_o_t_4*six_r_w_1_t_39 +
-            six_r_rel_o_in_axes5_z*six_r_w_1_t_30 - six_r_qdd_1_o_t_5*six_r_w_1_t_33 -
-            six_r_rel_o_in_axes5_y*six_r_w_1_t_29)
+        inv_six_r_w_1_t_24*(six_r_qdd_1_o_t*six_r_w_1_t_27 + six_r_qdd_1_o_t_2*six_r_w_1_t_28 +
+            six_r_qdd_1_o_t_3*six_r_w_1_t_40 + six_r_qdd_1_o_t_4*six_r_w_1_t_35 +
+            six_r_rel_o_in_axes5_z*six_r_w_1_t_26 - six_r_qdd_1_o_t_5*six_r_w_1_t_29 -
+            six_r_rel_o_in_axes5_y*six_r_w_1_t_25)
         )
         # (six_r-alpha_1_o) remainder of: angular acceleration of link 1
         six_r_alpha_1_o_t = six_r_c_2*six_r_qdd_1_o_t_5
@@ -7157,11 +7188,11 @@ def _run_Z(m, X, V, q):
         six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x
         # (six_r-alpha_4_o) remainder of: angular acceleration of link 4
         six_r_alpha_4_o_in_axes4_x = (
-        six_r_zeta_4_in_axes4_x + six_r_alpha_3_o_in_axes3_z*six_r_s_4 -
-            six_r_alpha_3_o_in_axes3_x*six_r_c_4
+        six_r_zeta_4_in_axes4_x + six_r_alpha_3_o_in_axes3_z*six_r_h_4_t -
+            six_r_alpha_3_o_in_axes3_x*six_r_e_2_in_axes5_z
         )
         six_r_alpha_4_o_in_axes4_y = (
-        six_r_alpha_3_o_in_axes3_x*six_r_s_4 + six_r_alpha_3_o_in_axes3_z*six_r_c_4 -
+        six_r_alpha_3_o_in_axes3_x*six_r_h_4_t + six_r_alpha_3_o_in_axes3_z*six_r_e_2_in_axes5_z -
             six_r_zeta_4_t
         )
         six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_y + six_r_qdd_4_o
@@ -7174,18 +7205,18 @@ def _run_Z(m, X, V, q):
         six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x
         # (six_r-alpha_5_o) remainder of: angular acceleration of link 5
         six_r_alpha_5_o_in_axes5_x = (
-        six_r_zeta_5_in_axes5_x + six_r_alpha_4_o_in_axes4_x*six_r_s_5 +
-            six_r_alpha_4_o_in_axes4_z*six_r_c_5
+        six_r_zeta_5_in_axes5_x + six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
+            six_r_alpha_4_o_in_axes4_z*six_r_e_4_in_axes5_x
         )
         six_r_alpha_5_o_in_axes5_y = (
-        six_r_alpha_4_o_in_axes4_x*six_r_c_5 - six_r_zeta_5_t -
-            six_r_alpha_4_o_in_axes4_z*six_r_s_5
+        six_r_alpha_4_o_in_axes4_x*six_r_e_4_in_axes5_x - six_r_zeta_5_t -
+            six_r_J_5_t*six_r_alpha_4_o_in_axes4_z
         )
         six_r_alpha_5_o_in_axes5_z = (
-        six_r_alpha_4_o_in_axes4_y + inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*six_r_w_1_t_14 +
-            six_r_qdd_1_o_t_3*six_r_w_1_t_25 + six_r_qdd_1_o_t_5*six_r_w_1_t_18 +
-            six_r_rel_o_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_o_t_4*six_r_w_1_t_22 -
-            six_r_qdd_4_o*six_r_w_1_t_15)
+        six_r_alpha_4_o_in_axes4_y + inv_six_r_w_1_t_8*(six_r_qdd_1_o_t_2*six_r_w_1_t_10 +
+            six_r_qdd_1_o_t_3*six_r_w_1_t_21 + six_r_qdd_1_o_t_5*six_r_w_1_t_14 +
+            six_r_rel_o_in_axes5_y*six_r_w_1_t_9 - six_r_qdd_1_o_t_4*six_r_w_1_t_18 -
+            six_r_qdd_4_o*six_r_w_1_t_11)
         )
         # (six_r-B_5_o) remainder of the acceleration tensor of link 5
         six_r_B_5_o_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_o_in_axes5_z
@@ -7196,7 +7227,7 @@ def _run_Z(m, X, V, q):
         six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x
         # (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3
         six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y
-        six_r_a_o_3_o_t_2 = six_r_qd_1_t_9*six_r_qd_1_t_9
+        six_r_a_o_3_o_t_2 = six_r_qd_1_t_13*six_r_qd_1_t_13
         six_r_a_o_3_o_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_o_t + six_r_a_o_3_o_t_2)
         six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*six_r_joint3_offset_x
         six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*six_r_joint3_offset_x
@@ -7214,13 +7245,14 @@ def _run_Z(m, X, V, q):
         six_r_a_o_4_o_in_axes3_z = (
         six_r_a_o_3_o_in_axes2_z + six_r_B_3_o_in_axes3_zy*six_r_joint4_offset_x
         )
-        # (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        # (six_r-acc_3) acceleration of the reference point of link 3, less gravity
         six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1
         six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1
         six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_z + six_r_g_in_axes1_x*six_r_s_2
         six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_x - six_r_g_in_axes1_z*six_r_s_2
         six_r_g_in_axes3_x = six_r_g_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_g_in_axes2_y
         six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_x + six_r_g_in_axes2_y*six_r_s_3
+        # (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - six_r_g_in_axes3_x
         six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - six_r_g_in_axes3_y
         six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - six_r_g_in_axes1_y
@@ -7241,14 +7273,21 @@ def _run_Z(m, X, V, q):
             six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
             six_r_f_3_o_t)
         )
+        # (six_r-acc_4) acceleration of the reference point of link 4, less gravity
+        six_r_g_in_axes4_x = (
+        six_r_g_in_axes1_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_g_in_axes3_x
+        )
+        six_r_g_in_axes4_y = (
+        six_r_e_2_in_axes5_z*six_r_g_in_axes1_y + six_r_g_in_axes3_x*six_r_h_4_t
+        )
         # (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
         six_r_acc_4_o_in_axes4_x = (
-        six_r_a_o_4_o_in_axes3_z*six_r_s_4 + six_r_c_4*six_r_g_in_axes3_x -
-            six_r_a_o_4_o_in_axes3_x*six_r_c_4 - six_r_g_in_axes1_y*six_r_s_4
+        six_r_a_o_4_o_in_axes3_z*six_r_h_4_t - six_r_g_in_axes4_x -
+            six_r_a_o_4_o_in_axes3_x*six_r_e_2_in_axes5_z
         )
         six_r_acc_4_o_in_axes4_y = (
-        six_r_a_o_4_o_in_axes3_x*six_r_s_4 + six_r_a_o_4_o_in_axes3_z*six_r_c_4 -
-            six_r_c_4*six_r_g_in_axes1_y - six_r_g_in_axes3_x*six_r_s_4
+        six_r_a_o_4_o_in_axes3_x*six_r_h_4_t + six_r_a_o_4_o_in_axes3_z*six_r_e_2_in_axes5_z -
+            six_r_g_in_axes4_y
         )
         six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - six_r_g_in_axes3_y
         # (six_r-f_4_o) remainder of: inertia force of link 4 less its weight
@@ -7273,24 +7312,28 @@ def _run_Z(m, X, V, q):
             six_r_f_4_o_t)
         )
         six_r_f_4_o_in_axes3_x = (
-        six_r_f_4_o_in_axes4_y*six_r_s_4 - six_r_c_4*six_r_f_4_o_in_axes4_x
+        six_r_f_4_o_in_axes4_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x
         )
         six_r_f_4_o_in_axes3_z = (
-        six_r_c_4*six_r_f_4_o_in_axes4_y + six_r_f_4_o_in_axes4_x*six_r_s_4
+        six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y + six_r_f_4_o_in_axes4_x*six_r_h_4_t
         )
-        # (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity
-        six_r_acc_5_o_in_axes5_x = (
-        six_r_u_1_in_axes5_x - axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y -
+        # (six_r-acc_5) acceleration of the reference point of link 5, less gravity
+        six_r_g_in_axes5_x = (
+        axis_x_six_r_axes5_x*gravity_x + axis_x_six_r_axes5_y*gravity_y +
             axis_x_six_r_axes5_z*gravity_z
         )
-        six_r_acc_5_o_in_axes5_y = (
-        six_r_u_1_in_axes5_y - axis_y_six_r_axes5_x*gravity_x - axis_y_six_r_axes5_y*gravity_y -
+        six_r_g_in_axes5_y = (
+        axis_y_six_r_axes5_x*gravity_x + axis_y_six_r_axes5_y*gravity_y +
             axis_y_six_r_axes5_z*gravity_z
         )
-        six_r_acc_5_o_in_axes5_z = (
-        six_r_u_1_in_axes5_z - axis_z_six_r_axes5_x*gravity_x - axis_z_six_r_axes5_y*gravity_y -
+        six_r_g_in_axes5_z = (
+        axis_z_six_r_axes5_x*gravity_x + axis_z_six_r_axes5_y*gravity_y +
             axis_z_six_r_axes5_z*gravity_z
         )
+        # (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity
+        six_r_acc_5_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_g_in_axes5_x
+        six_r_acc_5_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_g_in_axes5_y
+        six_r_acc_5_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_g_in_axes5_z
         # (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their reference points
         six_r_mu_5_o_in_axes5_x = (
         six_r_B_5_o_in_axes5_yx*six_r_J_5_in_spec5_xz +
@@ -7348,13 +7391,13 @@ def _run_Z(m, X, V, q):
         )
         # (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
         six_r_N_4_o_in_axes4_x = (
-        six_r_mu_4_o_in_axes4_x + six_r_c_5*six_r_mu_5_o_in_axes5_y +
-            six_r_mu_5_o_in_axes5_x*six_r_s_5
+        six_r_mu_4_o_in_axes4_x + six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
+            six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y
         )
         six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z
         six_r_N_4_o_in_axes4_z = (
-        six_r_mu_4_o_in_axes4_z + six_r_c_5*six_r_mu_5_o_in_axes5_x -
-            six_r_mu_5_o_in_axes5_y*six_r_s_5
+        six_r_mu_4_o_in_axes4_z + six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
+            six_r_J_5_t*six_r_mu_5_o_in_axes5_y
         )
         # (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         six_r_mu_3_o_in_axes3_x = (
@@ -7384,43 +7427,51 @@ def _run_Z(m, X, V, q):
         )
         # (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
         six_r_N_3_o_in_axes3_x = (
-        six_r_mu_3_o_in_axes3_x + six_r_N_4_o_in_axes4_y*six_r_s_4 +
-            six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_o_in_axes4_x*six_r_c_4
+        six_r_mu_3_o_in_axes3_x + six_r_N_4_o_in_axes4_y*six_r_h_4_t +
+            six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x -
+            six_r_N_4_o_in_axes4_x*six_r_e_2_in_axes5_z
         )
         six_r_N_3_o_in_axes3_y = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_y
         six_r_N_3_o_in_axes3_z = (
-        six_r_mu_3_o_in_axes3_z + six_r_N_4_o_in_axes4_x*six_r_s_4 +
-            six_r_N_4_o_in_axes4_y*six_r_c_4 - six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x
+        six_r_mu_3_o_in_axes3_z + six_r_N_4_o_in_axes4_x*six_r_h_4_t +
+            six_r_N_4_o_in_axes4_y*six_r_e_2_in_axes5_z -
+            six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x
         )
         # (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
         six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x
         six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z
         six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z
+        # (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        six_r_mu_2_t = (
+        six_r_g_in_axes1_y*six_r_h_2_in_spec2_y - six_r_g_in_axes2_y*six_r_h_2_in_spec2_z
+        )
+        six_r_mu_2_t_2 = (
+        six_r_g_in_axes2_x*six_r_h_2_in_spec2_z - six_r_g_in_axes1_y*six_r_h_2_in_spec2_x
+        )
+        six_r_mu_2_t_3 = (
+        six_r_g_in_axes2_y*six_r_h_2_in_spec2_x - six_r_g_in_axes2_x*six_r_h_2_in_spec2_y
+        )
         # (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x
         six_r_mu_2_o_in_axes2_x = (
         six_r_B_2_o_in_axes2_yx*six_r_J_2_in_spec2_xz +
             six_r_B_2_o_in_axes2_zy*six_r_Sigma_2_in_axes2_yy +
-            six_r_J_2_in_spec2_yz*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
-            six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
+            six_r_J_2_in_spec2_yz*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) - six_r_mu_2_t -
             six_r_B_2_o_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t - six_r_g_in_axes1_y*six_r_h_2_in_spec2_y
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t
         )
         six_r_mu_2_o_in_axes2_y = (
         six_r_B_2_o_in_axes2_zy*six_r_J_2_in_spec2_xy +
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_in_axes2_y +
-            six_r_g_in_axes1_y*six_r_h_2_in_spec2_x -
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_in_axes2_y - six_r_mu_2_t_2 -
             six_r_B_2_o_in_axes2_xy*six_r_J_2_in_spec2_yz -
             six_r_B_2_o_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
-            six_r_J_2_in_spec2_xz*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_z
+            six_r_J_2_in_spec2_xz*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2)
         )
         six_r_mu_2_o_in_axes2_z = (
         six_r_B_2_o_in_axes2_yx*six_r_Sigma_2_in_axes2_xx + six_r_J_2_in_spec2_xy*(six_r_mu_2_o_t
-            - six_r_a_o_3_o_t) + six_r_J_2_in_spec2_yz*six_r_alpha_1_o_in_axes2_y +
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
-            six_r_B_2_o_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
-            six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t - six_r_g_in_axes2_y*six_r_h_2_in_spec2_x
+            - six_r_a_o_3_o_t) + six_r_J_2_in_spec2_yz*six_r_alpha_1_o_in_axes2_y - six_r_mu_2_t_3
+            - six_r_B_2_o_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
+            six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t
         )
         # (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         six_r_N_2_o_in_axes2_x = (
@@ -7436,70 +7487,71 @@ def _run_Z(m, X, V, q):
             six_r_joint3_offset_x*(six_r_T_3_o_in_axes3_x*six_r_c_3 -
             six_r_T_3_o_in_axes3_y*six_r_s_3)
         )
-        # (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        six_r_mu_1_o_in_axes1_z = (
-        six_r_g_in_axes1_x*six_r_h_1_in_spec1_z - six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 -
-            six_r_g_in_axes1_y*six_r_h_1_in_spec1_y
+        # (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        six_r_mu_1_t = (
+        six_r_g_in_axes1_y*six_r_h_1_in_spec1_y - six_r_g_in_axes1_x*six_r_h_1_in_spec1_z
         )
+        # (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
+        six_r_mu_1_o_in_axes1_z = -six_r_mu_1_t - six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5
         # (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         six_r_N_1_o_in_axes1_z = (
         six_r_mu_1_o_in_axes1_z + six_r_N_2_o_in_axes2_x*six_r_c_2 -
             six_r_N_2_o_in_axes2_y*six_r_s_2
         )
         # (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        six_r_G_m1_o_t = inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z
+        six_r_G_m1_o_t = inv_six_r_w_1_t_8*six_r_mu_5_o_in_axes5_z
         six_r_G_m1_o_t_2 = (
-        inv_six_r_w_1_t_28*(six_r_G_m1_o_t*six_r_w_1_t_15 - six_r_N_4_o_in_axes4_z)
+        inv_six_r_w_1_t_24*(six_r_G_m1_o_t*six_r_w_1_t_11 - six_r_N_4_o_in_axes4_z)
         )
         six_r_G_m1_o_t_3 = (
-        inv_six_r_w_1_t_49*(six_r_G_m1_o_t*six_r_w_1_t_18 + six_r_G_m1_o_t_2*six_r_w_1_t_33 -
+        inv_six_r_w_1_t_45*(six_r_G_m1_o_t*six_r_w_1_t_14 + six_r_G_m1_o_t_2*six_r_w_1_t_29 -
             six_r_N_1_o_in_axes1_z)
         )
         six_r_G_m1_o_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_G_m1_o_t*six_r_w_1_t_22 + six_r_G_m1_o_t_2*six_r_w_1_t_39 -
-            six_r_N_2_o_in_axes2_z - six_r_G_m1_o_t_3*six_r_w_1_t_55)
+        inv_six_r_w_1_t_63*(six_r_G_m1_o_t*six_r_w_1_t_18 + six_r_G_m1_o_t_2*six_r_w_1_t_35 -
+            six_r_N_2_o_in_axes2_z - six_r_G_m1_o_t_3*six_r_w_1_t_51)
         )
         six_r_G_m1_o_t_5 = (
-        inv_six_r_w_1_t_79*(six_r_N_3_o_in_axes3_z + six_r_G_m1_o_t*six_r_w_1_t_25 +
-            six_r_G_m1_o_t_3*six_r_w_1_t_61 + six_r_G_m1_o_t_4*six_r_w_1_t_73 -
-            six_r_G_m1_o_t_2*six_r_w_1_t_44)
+        inv_six_r_w_1_t_75*(six_r_N_3_o_in_axes3_z + six_r_G_m1_o_t*six_r_w_1_t_21 +
+            six_r_G_m1_o_t_3*six_r_w_1_t_57 + six_r_G_m1_o_t_4*six_r_w_1_t_69 -
+            six_r_G_m1_o_t_2*six_r_w_1_t_40)
         )
         six_r_G_m1_o_t_6 = (
-        six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_31 + six_r_G_m1_o_t_3*six_r_w_1_t_53 +
-            six_r_G_m1_o_t_4*six_r_w_1_t_71 - six_r_G_m1_o_t_5*six_r_qd_1_t_4)
+        six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_27 + six_r_G_m1_o_t_3*six_r_w_1_t_49 +
+            six_r_G_m1_o_t_4*six_r_w_1_t_67 - six_r_G_m1_o_t_5*six_r_m1_w_1_t)
         )
         # (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m2_o_t = (
-        six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_32 + six_r_G_m1_o_t_3*six_r_w_1_t_54 +
-            six_r_G_m1_o_t_4*six_r_w_1_t_72 - six_r_G_m1_o_t*six_r_w_1_t_14 -
-            six_r_G_m1_o_t_5*six_r_qd_1_t_5)
+        six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_28 + six_r_G_m1_o_t_3*six_r_w_1_t_50 +
+            six_r_G_m1_o_t_4*six_r_w_1_t_68 - six_r_G_m1_o_t*six_r_w_1_t_10 -
+            six_r_G_m1_o_t_5*six_r_m2_w_1_t)
         )
         # (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*six_r_n_m2_in_axes5_z
+        six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*six_r_end_p1_in_axes5_y
         six_r_G_m_o_in_axes5_y = (
         six_r_G_m2_o_t*six_r_end_p1_in_axes5_z - six_r_G_m1_o_t_6*six_r_n_m1_in_axes5_y
         )
         # (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         six_r_c_o_in_axes5_x = (
-        six_r_G_m1_o_t_3*six_r_w_1_t_50 + six_r_G_m1_o_t_4*six_r_w_1_t_68 +
+        six_r_G_m1_o_t_3*six_r_w_1_t_46 + six_r_G_m1_o_t_4*six_r_w_1_t_64 +
             six_r_W_5_t_3*six_r_h_5_in_spec5_x - six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*six_r_qd_1_t
+            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*six_r_w_1_t_76
         )
         six_r_c_o_in_axes5_y = (
-        six_r_G_m1_o_t_5*six_r_qd_1_t_2 + six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_2) -
+        six_r_G_m1_o_t_5*six_r_w_1_t_77 + six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_2) -
             six_r_B_5_o_in_axes5_yx*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t*six_r_w_1_t_13 -
-            six_r_G_m1_o_t_2*six_r_w_1_t_29 - six_r_G_m1_o_t_3*six_r_w_1_t_51 -
-            six_r_G_m1_o_t_4*six_r_w_1_t_69
+            six_r_B_5_o_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t*six_r_w_1_t_9 -
+            six_r_G_m1_o_t_2*six_r_w_1_t_25 - six_r_G_m1_o_t_3*six_r_w_1_t_47 -
+            six_r_G_m1_o_t_4*six_r_w_1_t_65
         )
         six_r_c_o_in_axes5_z = (
-        six_r_G_m1_o_t_2*six_r_w_1_t_30 + six_r_G_m1_o_t_3*six_r_w_1_t_52 +
-            six_r_G_m1_o_t_4*six_r_w_1_t_70 + six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_2)
+        six_r_G_m1_o_t_2*six_r_w_1_t_26 + six_r_G_m1_o_t_3*six_r_w_1_t_48 +
+            six_r_G_m1_o_t_4*six_r_w_1_t_66 + six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_2)
             - six_r_B_5_o_in_axes5_zx*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_o_t_5*six_r_qd_1_t_3
+            six_r_B_5_o_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_o_t_5*six_r_w_1_t_78
         )
         # (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation
-        six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*six_r_n_m2_in_axes5_z
+        six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*six_r_end_p1_in_axes5_y
         # (six_r-U) velocity and gravity terms of the leg force
         six_r_U_x = (
         -axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x - axis_y_six_r_axes5_x*six_r_c_o_in_axes5_y -
@@ -7530,9 +7582,9 @@ def _run_Z(m, X, V, q):
             six_r_U_x*six_r_q_y
         )
         ok = (
-        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
-            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
+        ok & (abs(six_r_w_1_t_8) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_24) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_45) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_63) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_75) > _TOLERANCE * six_r_size)
         )
         # (Z_t) translational part of Z
         Z_t_six_r_x += six_r_U_x
@@ -7613,6 +7665,22 @@ def _run_H(m, X, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-h_4) first moment of link 4 about the origin of link 4
+        six_r_e_2_in_axes5_z = cos(six_r_q_4)
+        six_r_h_4_t = sin(six_r_q_4)
+        # (six_r-J_5) inertia tensor of link 5 about the connection point
+        six_r_e_4_in_axes5_x = cos(six_r_q_5)
+        six_r_J_5_t = sin(six_r_q_5)
+        # (six_r-S) from the base point to the connection point
+        six_r_q_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
         six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
@@ -7625,28 +7693,74 @@ def _run_H(m, X, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
-        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = cos(six_r_q_4)
-        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = sin(six_r_q_4)
-        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = cos(six_r_q_5)
-        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = sin(six_r_q_5)
+        # (six_r-S_dot) velocity of the connection point
+        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
+        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
+        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
+        six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
+        axis_z_six_r_axes5_x = (
+        six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
+            six_r_S_dot_t_6*six_r_base_frame_xz
+        )
+        axis_z_six_r_axes5_y = (
+        six_r_S_dot_t_3*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
+            six_r_S_dot_t_6*six_r_base_frame_yz
+        )
+        axis_z_six_r_axes5_z = (
+        six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
+            six_r_S_dot_t_6*six_r_base_frame_zz
+        )
+        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
+        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
+        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
+        six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
+        six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_13 = six_r_S_dot_t_11*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_y
+        axis_y_six_r_axes5_x = (
+        six_r_S_dot_t_10*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
+            six_r_S_dot_t_13*six_r_base_frame_xz
+        )
+        axis_y_six_r_axes5_y = (
+        six_r_S_dot_t_10*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
+            six_r_S_dot_t_13*six_r_base_frame_yz
+        )
+        axis_y_six_r_axes5_z = (
+        six_r_S_dot_t_10*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
+            six_r_S_dot_t_13*six_r_base_frame_zz
+        )
+        axis_x_six_r_axes5_x = (
+        axis_y_six_r_axes5_y*axis_z_six_r_axes5_z - axis_y_six_r_axes5_z*axis_z_six_r_axes5_y
+        )
+        axis_x_six_r_axes5_y = (
+        axis_y_six_r_axes5_z*axis_z_six_r_axes5_x - axis_y_six_r_axes5_x*axis_z_six_r_axes5_z
+        )
+        axis_x_six_r_axes5_z = (
+        axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
+        )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
+        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes4_z = (
+        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
+        )
+        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
+        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
+        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_x = (
+        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
+        )
+        six_r_r_3_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
+        )
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -7654,10 +7768,10 @@ def _run_H(m, X, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
+        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
+        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -7666,17 +7780,17 @@ def _run_H(m, X, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
+        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
+        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
+        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -7687,31 +7801,31 @@ def _run_H(m, X, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
-        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
-            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
+        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
+            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
+            six_r_J_5_t*six_r_r_4_in_axes4_z)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -7744,199 +7858,181 @@ def _run_H(m, X, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
+        six_r_end_p1_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
+        )
+        six_r_n_m1_t_11 = (
+        six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_t_12 = (
+        six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_in_axes4_z = (
+        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m1_x = (
+        axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m1_y = (
+        axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_y*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m1_z = (
+        axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y
+        )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
+        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_n_m2_t = (
+        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_t_2 = (
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        six_r_n_m2_x = (
+        axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
+            axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z
+        )
+        six_r_n_m2_y = (
+        axis_z_six_r_axes5_y*six_r_end_p1_in_axes5_y -
+            axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z
+        )
+        six_r_n_m2_z = (
+        axis_z_six_r_axes5_z*six_r_end_p1_in_axes5_y -
+            axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z
+        )
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
-        six_r_w_1_t = (
-        six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        six_r_w_1_t = six_r_n_m1_t_11*six_r_size
+        six_r_w_1_t_2 = six_r_n_m2_t*six_r_size
+        six_r_w_1_t_3 = six_r_n_m1_t_12*six_r_size
+        six_r_w_1_t_4 = six_r_n_m2_t_2*six_r_size
+        six_r_w_1_t_5 = six_r_n_m1_in_axes4_z*six_r_size
+        six_r_w_1_t_6 = six_r_n_m2_in_axes4_z*six_r_size
+        six_r_w_1_t_7 = six_r_end_p1_in_axes5_y*six_r_size
+        six_r_w_1_t_8 = sqrt(six_r_size_t + six_r_w_1_t_7*six_r_w_1_t_7)
+        inv_six_r_w_1_t_8 = 1.0/six_r_w_1_t_8
+        six_r_w_1_t_9 = inv_six_r_w_1_t_8*six_r_platform_joint_offset_x
+        six_r_w_1_t_10 = inv_six_r_w_1_t_8*six_r_w_1_t_7
+        six_r_w_1_t_11 = six_r_w_1_t_10*six_r_w_1_t_6
+        six_r_w_1_t_12 = six_r_w_1_t_11*six_r_w_1_t_9
+        six_r_w_1_t_13 = six_r_w_1_t_6 - six_r_w_1_t_10*six_r_w_1_t_11
+        six_r_w_1_t_14 = six_r_v_1_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_10*six_r_w_1_t_2
+        six_r_w_1_t_15 = six_r_v_1_in_axes5_y - six_r_w_1_t_14*six_r_w_1_t_9
+        six_r_w_1_t_16 = six_r_w_1_t_2 + six_r_w_1_t_10*six_r_w_1_t_14
+        six_r_w_1_t_17 = six_r_w_1_t_10*six_r_w_1_t_4
+        six_r_w_1_t_18 = six_r_v_2_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_v_2_in_axes5_y - six_r_w_1_t_18*six_r_w_1_t_9
+        six_r_w_1_t_20 = six_r_w_1_t_4 + six_r_w_1_t_10*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_w_1_t_17 - six_r_v_3_in_axes5_y*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_3_in_axes5_y + six_r_w_1_t_21*six_r_w_1_t_9
+        six_r_w_1_t_23 = six_r_w_1_t_4 - six_r_w_1_t_10*six_r_w_1_t_21
+        six_r_w_1_t_24 = (
+        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_13*six_r_w_1_t_13 + six_r_w_1_t_5*six_r_w_1_t_5)
         )
-        six_r_w_1_t_2 = (
-        six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        inv_six_r_w_1_t_24 = 1.0/six_r_w_1_t_24
+        six_r_w_1_t_25 = inv_six_r_w_1_t_24*six_r_w_1_t_12
+        six_r_w_1_t_26 = inv_six_r_w_1_t_24*six_r_v_4_in_axes5_z
+        six_r_w_1_t_27 = inv_six_r_w_1_t_24*six_r_w_1_t_5
+        six_r_w_1_t_28 = inv_six_r_w_1_t_24*six_r_w_1_t_13
+        six_r_w_1_t_29 = (
+        six_r_w_1_t*six_r_w_1_t_27 + six_r_w_1_t_15*six_r_w_1_t_25 + six_r_w_1_t_16*six_r_w_1_t_28
+            - six_r_v_1_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_3 = (
-        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_30 = six_r_w_1_t_25*six_r_w_1_t_29 - six_r_w_1_t_15
+        six_r_w_1_t_31 = six_r_v_1_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_29
+        six_r_w_1_t_32 = six_r_w_1_t_27*six_r_w_1_t_29 - six_r_w_1_t
+        six_r_w_1_t_33 = six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_16
+        six_r_w_1_t_34 = six_r_w_1_t_27*six_r_w_1_t_3
+        six_r_w_1_t_35 = (
+        six_r_w_1_t_34 + six_r_w_1_t_19*six_r_w_1_t_25 + six_r_w_1_t_20*six_r_w_1_t_28 -
+            six_r_v_2_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_36 = six_r_w_1_t_25*six_r_w_1_t_35 - six_r_w_1_t_19
+        six_r_w_1_t_37 = six_r_v_2_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_35
+        six_r_w_1_t_38 = six_r_w_1_t_27*six_r_w_1_t_35 - six_r_w_1_t_3
+        six_r_w_1_t_39 = six_r_w_1_t_28*six_r_w_1_t_35 - six_r_w_1_t_20
+        six_r_w_1_t_40 = (
+        six_r_w_1_t_34 + six_r_w_1_t_22*six_r_w_1_t_25 + six_r_w_1_t_23*six_r_w_1_t_28 -
+            six_r_v_3_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_5 = six_r_size*six_r_w_1_t
-        six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
-        six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
-        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
-        six_r_w_1_t_9 = (
-        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
+        six_r_w_1_t_41 = six_r_w_1_t_25*six_r_w_1_t_40 - six_r_w_1_t_22
+        six_r_w_1_t_42 = six_r_v_3_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_40
+        six_r_w_1_t_43 = six_r_w_1_t_27*six_r_w_1_t_40 - six_r_w_1_t_3
+        six_r_w_1_t_44 = six_r_w_1_t_28*six_r_w_1_t_40 - six_r_w_1_t_23
+        six_r_w_1_t_45 = (
+        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_30*six_r_w_1_t_30 +
+            six_r_w_1_t_31*six_r_w_1_t_31 + six_r_w_1_t_32*six_r_w_1_t_32 +
+            six_r_w_1_t_33*six_r_w_1_t_33)
         )
-        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
-        six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
-        six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
-        inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
-        six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x
-        six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11
-        six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14
-        six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15
-        six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15
-        six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_14*six_r_w_1_t_6
-        six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18
-        six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18
-        six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8
-        six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21
-        six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22
-        six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22
-        six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13
-        six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25
-        six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25
-        six_r_w_1_t_28 = (
-        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_16*six_r_w_1_t_16 +
-            six_r_w_1_t_17*six_r_w_1_t_17 + six_r_w_1_t_9*six_r_w_1_t_9)
+        inv_six_r_w_1_t_45 = 1.0/six_r_w_1_t_45
+        six_r_w_1_t_46 = inv_six_r_w_1_t_45*six_r_v_1_in_axes5_x
+        six_r_w_1_t_47 = inv_six_r_w_1_t_45*six_r_w_1_t_30
+        six_r_w_1_t_48 = inv_six_r_w_1_t_45*six_r_w_1_t_31
+        six_r_w_1_t_49 = inv_six_r_w_1_t_45*six_r_w_1_t_32
+        six_r_w_1_t_50 = inv_six_r_w_1_t_45*six_r_w_1_t_33
+        six_r_w_1_t_51 = (
+        six_r_v_2_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_36*six_r_w_1_t_47 +
+            six_r_w_1_t_37*six_r_w_1_t_48 + six_r_w_1_t_38*six_r_w_1_t_49 +
+            six_r_w_1_t_39*six_r_w_1_t_50
         )
-        inv_six_r_w_1_t_28 = 1.0/six_r_w_1_t_28
-        six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16
-        six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z
-        six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9
-        six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17
-        six_r_w_1_t_33 = (
-        six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32 +
-            six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_52 = six_r_v_2_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_51
+        six_r_w_1_t_53 = six_r_w_1_t_36 - six_r_w_1_t_47*six_r_w_1_t_51
+        six_r_w_1_t_54 = six_r_w_1_t_37 - six_r_w_1_t_48*six_r_w_1_t_51
+        six_r_w_1_t_55 = six_r_w_1_t_38 - six_r_w_1_t_49*six_r_w_1_t_51
+        six_r_w_1_t_56 = six_r_w_1_t_39 - six_r_w_1_t_50*six_r_w_1_t_51
+        six_r_w_1_t_57 = (
+        six_r_v_3_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_41*six_r_w_1_t_47 +
+            six_r_w_1_t_42*six_r_w_1_t_48 + six_r_w_1_t_43*six_r_w_1_t_49 +
+            six_r_w_1_t_44*six_r_w_1_t_50
         )
-        six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19
-        six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33
-        six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5
-        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20
-        six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7
-        six_r_w_1_t_39 = (
-        six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32 -
-            six_r_v_2_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_58 = six_r_v_3_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_57
+        six_r_w_1_t_59 = six_r_w_1_t_41 - six_r_w_1_t_47*six_r_w_1_t_57
+        six_r_w_1_t_60 = six_r_w_1_t_42 - six_r_w_1_t_48*six_r_w_1_t_57
+        six_r_w_1_t_61 = six_r_w_1_t_43 - six_r_w_1_t_49*six_r_w_1_t_57
+        six_r_w_1_t_62 = six_r_w_1_t_44 - six_r_w_1_t_50*six_r_w_1_t_57
+        six_r_w_1_t_63 = (
+        sqrt(six_r_w_1_t_52*six_r_w_1_t_52 + six_r_w_1_t_53*six_r_w_1_t_53 +
+            six_r_w_1_t_54*six_r_w_1_t_54 + six_r_w_1_t_55*six_r_w_1_t_55 +
+            six_r_w_1_t_56*six_r_w_1_t_56)
         )
-        six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23
-        six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39
-        six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7
-        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24
-        six_r_w_1_t_44 = (
-        six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32 -
-            six_r_v_3_in_axes5_z*six_r_w_1_t_30
+        inv_six_r_w_1_t_63 = 1.0/six_r_w_1_t_63
+        six_r_w_1_t_64 = inv_six_r_w_1_t_63*six_r_w_1_t_52
+        six_r_w_1_t_65 = inv_six_r_w_1_t_63*six_r_w_1_t_53
+        six_r_w_1_t_66 = inv_six_r_w_1_t_63*six_r_w_1_t_54
+        six_r_w_1_t_67 = inv_six_r_w_1_t_63*six_r_w_1_t_55
+        six_r_w_1_t_68 = inv_six_r_w_1_t_63*six_r_w_1_t_56
+        six_r_w_1_t_69 = (
+        six_r_w_1_t_58*six_r_w_1_t_64 + six_r_w_1_t_59*six_r_w_1_t_65 +
+            six_r_w_1_t_60*six_r_w_1_t_66 + six_r_w_1_t_61*six_r_w_1_t_67 +
+            six_r_w_1_t_62*six_r_w_1_t_68
         )
-        six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26
-        six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44
-        six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7
-        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27
-        six_r_w_1_t_49 = (
-        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_34*six_r_w_1_t_34 +
-            six_r_w_1_t_35*six_r_w_1_t_35 + six_r_w_1_t_36*six_r_w_1_t_36 +
-            six_r_w_1_t_37*six_r_w_1_t_37)
+        six_r_w_1_t_70 = six_r_w_1_t_58 - six_r_w_1_t_64*six_r_w_1_t_69
+        six_r_w_1_t_71 = six_r_w_1_t_59 - six_r_w_1_t_65*six_r_w_1_t_69
+        six_r_w_1_t_72 = six_r_w_1_t_60 - six_r_w_1_t_66*six_r_w_1_t_69
+        six_r_w_1_t_73 = six_r_w_1_t_61 - six_r_w_1_t_67*six_r_w_1_t_69
+        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_69
+        six_r_w_1_t_75 = (
+        sqrt(six_r_w_1_t_70*six_r_w_1_t_70 + six_r_w_1_t_71*six_r_w_1_t_71 +
+            six_r_w_1_t_72*six_r_w_1_t_72 + six_r_w_1_t_73*six_r_w_1_t_73 +
+            six_r_w_1_t_74*six_r_w_1_t_74)
         )
-        inv_six_r_w_1_t_49 = 1.0/six_r_w_1_t_49
-        six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x
-        six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34
-        six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35
-        six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36
-        six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37
-        six_r_w_1_t_55 = (
-        six_r_v_2_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_40*six_r_w_1_t_51 +
-            six_r_w_1_t_41*six_r_w_1_t_52 + six_r_w_1_t_42*six_r_w_1_t_53 +
-            six_r_w_1_t_43*six_r_w_1_t_54
-        )
-        six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55
-        six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55
-        six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55
-        six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55
-        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55
-        six_r_w_1_t_61 = (
-        six_r_v_3_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_45*six_r_w_1_t_51 +
-            six_r_w_1_t_46*six_r_w_1_t_52 + six_r_w_1_t_47*six_r_w_1_t_53 +
-            six_r_w_1_t_48*six_r_w_1_t_54
-        )
-        six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61
-        six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61
-        six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61
-        six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61
-        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61
-        six_r_w_1_t_67 = (
-        sqrt(six_r_w_1_t_56*six_r_w_1_t_56 + six_r_w_1_t_57*six_r_w_1_t_57 +
-            six_r_w_1_t_58*six_r_w_1_t_58 + six_r_w_1_t_59*six_r_w_1_t_59 +
-            six_r_w_1_t_60*six_r_w_1_t_60)
-        )
-        inv_six_r_w_1_t_67 = 1.0/six_r_w_1_t_67
-        six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56
-        six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57
-        six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58
-        six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59
-        six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60
-        six_r_w_1_t_73 = (
-        six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69 +
-            six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72
-        )
-        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73
-        six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73
-        six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73
-        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73
-        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73
-        six_r_w_1_t_79 = (
-        sqrt(six_r_w_1_t_74*six_r_w_1_t_74 + six_r_w_1_t_75*six_r_w_1_t_75 +
-            six_r_w_1_t_76*six_r_w_1_t_76 + six_r_w_1_t_77*six_r_w_1_t_77 +
-            six_r_w_1_t_78*six_r_w_1_t_78)
-        )
+        inv_six_r_w_1_t_75 = 1.0/six_r_w_1_t_75
+        six_r_w_1_t_76 = inv_six_r_w_1_t_75*six_r_w_1_t_70
+        six_r_w_1_t_77 = inv_six_r_w_1_t_75*six_r_w_1_t_71
+        six_r_w_1_t_78 = inv_six_r_w_1_t_75*six_r_w_1_t_72
+        # (six_r-m1_w_1) moment part 1 of reciprocal wrench 1
+        six_r_m1_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_73
+        # (six_r-m2_w_1) moment part 2 of reciprocal wrench 1
+        six_r_m2_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_74
         # (six_r-w_2) force part of reciprocal wrench 2
-        six_r_w_2_t = six_r_c_3*six_r_s_4
-        six_r_w_2_t_2 = six_r_s_3*six_r_s_4
-        six_r_w_2_t_3 = six_r_c_2*six_r_w_2_t_2 + six_r_s_2*six_r_w_2_t
-        six_r_w_2_t_4 = six_r_s_2*six_r_w_2_t_2 - six_r_c_2*six_r_w_2_t
-        six_r_w_2_t_5 = six_r_c_1*six_r_w_2_t_4 - six_r_c_4*six_r_s_1
-        six_r_w_2_t_6 = six_r_c_1*six_r_c_4 + six_r_s_1*six_r_w_2_t_4
-        axis_z_six_r_axes5_x = (
-        six_r_base_frame_xx*six_r_w_2_t_3 + six_r_base_frame_xy*six_r_w_2_t_5 +
-            six_r_base_frame_xz*six_r_w_2_t_6
-        )
-        axis_z_six_r_axes5_y = (
-        six_r_base_frame_yx*six_r_w_2_t_3 + six_r_base_frame_yy*six_r_w_2_t_5 +
-            six_r_base_frame_yz*six_r_w_2_t_6
-        )
-        axis_z_six_r_axes5_z = (
-        six_r_base_frame_zx*six_r_w_2_t_3 + six_r_base_frame_zy*six_r_w_2_t_5 +
-            six_r_base_frame_zz*six_r_w_2_t_6
-        )
-        six_r_w_2_t_7 = six_r_c_4*six_r_c_5
-        six_r_w_2_t_8 = six_r_s_3*six_r_s_5 - six_r_c_3*six_r_w_2_t_7
-        six_r_w_2_t_9 = -six_r_c_3*six_r_s_5 - six_r_s_3*six_r_w_2_t_7
-        six_r_w_2_t_10 = six_r_c_2*six_r_w_2_t_9 + six_r_s_2*six_r_w_2_t_8
-        six_r_w_2_t_11 = six_r_s_2*six_r_w_2_t_9 - six_r_c_2*six_r_w_2_t_8
-        six_r_w_2_t_12 = six_r_c_1*six_r_w_2_t_11 - six_r_e_2_in_axes5_y*six_r_s_1
-        six_r_w_2_t_13 = six_r_c_1*six_r_e_2_in_axes5_y + six_r_s_1*six_r_w_2_t_11
-        axis_y_six_r_axes5_x = (
-        six_r_base_frame_xx*six_r_w_2_t_10 + six_r_base_frame_xy*six_r_w_2_t_12 +
-            six_r_base_frame_xz*six_r_w_2_t_13
-        )
-        axis_y_six_r_axes5_y = (
-        six_r_base_frame_yx*six_r_w_2_t_10 + six_r_base_frame_yy*six_r_w_2_t_12 +
-            six_r_base_frame_yz*six_r_w_2_t_13
-        )
-        axis_y_six_r_axes5_z = (
-        six_r_base_frame_zx*six_r_w_2_t_10 + six_r_base_frame_zy*six_r_w_2_t_12 +
-            six_r_base_frame_zz*six_r_w_2_t_13
-        )
-        axis_x_six_r_axes5_x = (
-        axis_y_six_r_axes5_y*axis_z_six_r_axes5_z - axis_y_six_r_axes5_z*axis_z_six_r_axes5_y
-        )
-        axis_x_six_r_axes5_y = (
-        axis_y_six_r_axes5_z*axis_z_six_r_axes5_x - axis_y_six_r_axes5_x*axis_z_six_r_axes5_z
-        )
-        axis_x_six_r_axes5_z = (
-        axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
-        )
-        inv_six_r_w_1_t_79 = 1.0/six_r_w_1_t_79
-        six_r_w_2_t_14 = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73
-        six_r_w_2_in_axes5_x = (
-        inv_six_r_w_1_t_67*six_r_w_1_t_68 - inv_six_r_w_1_t_79*six_r_w_1_t_74*six_r_w_2_t_14
-        )
-        six_r_w_2_in_axes5_y = (
-        inv_six_r_w_1_t_79*six_r_w_1_t_75*six_r_w_2_t_14 - inv_six_r_w_1_t_67*six_r_w_1_t_69
-        )
-        six_r_w_2_in_axes5_z = (
-        inv_six_r_w_1_t_67*six_r_w_1_t_70 - inv_six_r_w_1_t_79*six_r_w_1_t_76*six_r_w_2_t_14
-        )
+        six_r_w_2_t = inv_six_r_w_1_t_63*inv_six_r_w_1_t_75*six_r_w_1_t_69
+        six_r_w_2_in_axes5_x = inv_six_r_w_1_t_63*six_r_w_1_t_64 - six_r_w_1_t_76*six_r_w_2_t
+        six_r_w_2_in_axes5_y = six_r_w_1_t_77*six_r_w_2_t - inv_six_r_w_1_t_63*six_r_w_1_t_65
+        six_r_w_2_in_axes5_z = inv_six_r_w_1_t_63*six_r_w_1_t_66 - six_r_w_1_t_78*six_r_w_2_t
         six_r_w_2_x = (
         axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x + axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y +
             axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z
@@ -7950,51 +8046,24 @@ def _run_H(m, X, q):
             axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z
         )
         # (six_r-m1_w_2) moment part 1 of reciprocal wrench 2
-        six_r_m1_w_2 = (
-        six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_71 -
-            inv_six_r_w_1_t_79*six_r_w_1_t_77*six_r_w_2_t_14)
-        )
+        six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_67 - six_r_m1_w_1_t*six_r_w_2_t)
         # (six_r-m2_w_2) moment part 2 of reciprocal wrench 2
-        six_r_m2_w_2 = (
-        six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_72 -
-            inv_six_r_w_1_t_79*six_r_w_1_t_78*six_r_w_2_t_14)
-        )
+        six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_68 - six_r_m2_w_1_t*six_r_w_2_t)
         # (six_r-o_2) moment part of reciprocal wrench 2
-        six_r_o_2_x = (
-        six_r_m1_w_2*(axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_x*six_r_n_m2_in_axes5_z) +
-            six_r_m2_w_2*(axis_z_six_r_axes5_x*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z)
-        )
-        six_r_o_2_y = (
-        six_r_m1_w_2*(axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_y*six_r_n_m2_in_axes5_z) +
-            six_r_m2_w_2*(axis_z_six_r_axes5_y*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z)
-        )
-        six_r_o_2_z = (
-        six_r_m1_w_2*(axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_z*six_r_n_m2_in_axes5_z) +
-            six_r_m2_w_2*(axis_z_six_r_axes5_z*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z)
-        )
+        six_r_o_2_x = six_r_m1_w_2*six_r_n_m1_x + six_r_m2_w_2*six_r_n_m2_x
+        six_r_o_2_y = six_r_m1_w_2*six_r_n_m1_y + six_r_m2_w_2*six_r_n_m2_y
+        six_r_o_2_z = six_r_m1_w_2*six_r_n_m1_z + six_r_m2_w_2*six_r_n_m2_z
         # (six_r-H_a_2) moment of the column's unit force about the platform origin
-        six_r_q_x = (
-        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
-        )
-        six_r_q_y = (
-        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
-        )
-        six_r_q_z = (
-        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
-        )
-        six_r_H_a_2_x = six_r_o_2_x + six_r_q_y*six_r_w_2_z - six_r_q_z*six_r_w_2_y
-        six_r_H_a_2_y = six_r_o_2_y + six_r_q_z*six_r_w_2_x - six_r_q_x*six_r_w_2_z
-        six_r_H_a_2_z = six_r_o_2_z + six_r_q_x*six_r_w_2_y - six_r_q_y*six_r_w_2_x
+        six_r_H_a_2_t = six_r_q_y*six_r_w_2_z - six_r_q_z*six_r_w_2_y
+        six_r_H_a_2_t_2 = six_r_q_z*six_r_w_2_x - six_r_q_x*six_r_w_2_z
+        six_r_H_a_2_t_3 = six_r_q_x*six_r_w_2_y - six_r_q_y*six_r_w_2_x
+        six_r_H_a_2_x = six_r_H_a_2_t + six_r_o_2_x
+        six_r_H_a_2_y = six_r_H_a_2_t_2 + six_r_o_2_y
+        six_r_H_a_2_z = six_r_H_a_2_t_3 + six_r_o_2_z
         ok = (
-        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
-            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
+        ok & (abs(six_r_w_1_t_8) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_24) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_45) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_63) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_75) > _TOLERANCE * six_r_size)
         )
         # (six_r-w_2) force part of reciprocal wrench 2
         out_H[_H_six_r[0][leg]] = six_r_w_2_x
@@ -8007,7 +8076,7 @@ def _run_H(m, X, q):
     return ok, (out_H,)
 
 
-# required: 5649 mul, 4221 add, 30 div, 30 sqrt, 60 trig
+# required: 5631 mul, 4203 add, 30 div, 30 sqrt, 60 trig
 def _run_required(m, X, V, A, q):
     sqrt = m.sqrt
     sin = m.sin
@@ -8077,9 +8146,22 @@ def _run_required(m, X, V, A, q):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -8092,21 +8174,9 @@ def _run_required(m, X, V, A, q):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
-        f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
-        f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
-        f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*m_star - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -8177,6 +8247,22 @@ def _run_required(m, X, V, A, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-h_4) first moment of link 4 about the origin of link 4
+        six_r_e_2_in_axes5_z = cos(six_r_q_4)
+        six_r_h_4_t = sin(six_r_q_4)
+        # (six_r-J_5) inertia tensor of link 5 about the connection point
+        six_r_e_4_in_axes5_x = cos(six_r_q_5)
+        six_r_J_5_t = sin(six_r_q_5)
+        # (six_r-S) from the base point to the connection point
+        six_r_q_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
         six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
@@ -8189,22 +8275,14 @@ def _run_required(m, X, V, A, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
-        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = cos(six_r_q_4)
-        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = sin(six_r_q_4)
-        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = cos(six_r_q_5)
-        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
-        six_r_S_dot_t = six_r_c_3*six_r_s_4
-        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
+        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
+        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
+        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -8217,9 +8295,9 @@ def _run_required(m, X, V, A, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
-        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
+        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
+        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -8245,15 +8323,6 @@ def _run_required(m, X, V, A, q):
         axis_x_six_r_axes5_z = (
         axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
         )
-        six_r_q_x = (
-        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
-        )
-        six_r_q_y = (
-        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
-        )
-        six_r_q_z = (
-        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
-        )
         six_r_S_dot_t_14 = omega_y*six_r_q_z - omega_z*six_r_q_y
         six_r_S_dot_t_15 = omega_z*six_r_q_x - omega_x*six_r_q_z
         six_r_S_dot_t_16 = omega_x*six_r_q_y - omega_y*six_r_q_x
@@ -8273,19 +8342,25 @@ def _run_required(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
+        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes4_z = (
+        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
+        )
+        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
+        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
+        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_x = (
+        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
+        )
+        six_r_r_3_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
+        )
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -8293,10 +8368,10 @@ def _run_required(m, X, V, A, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
+        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
+        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -8305,17 +8380,17 @@ def _run_required(m, X, V, A, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
+        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
+        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
+        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -8326,30 +8401,31 @@ def _run_required(m, X, V, A, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
+        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
-            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
+        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
+            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
+            six_r_J_5_t*six_r_r_4_in_axes4_z)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -8382,150 +8458,160 @@ def _run_required(m, X, V, A, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
+        six_r_end_p1_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
+        )
+        six_r_n_m1_t_11 = (
+        six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_t_12 = (
+        six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_in_axes4_z = (
+        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
+        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_n_m2_t = (
+        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_t_2 = (
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
-        six_r_w_1_t = (
-        six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        six_r_w_1_t = six_r_n_m1_t_11*six_r_size
+        six_r_w_1_t_2 = six_r_n_m2_t*six_r_size
+        six_r_w_1_t_3 = six_r_n_m1_t_12*six_r_size
+        six_r_w_1_t_4 = six_r_n_m2_t_2*six_r_size
+        six_r_w_1_t_5 = six_r_n_m1_in_axes4_z*six_r_size
+        six_r_w_1_t_6 = six_r_n_m2_in_axes4_z*six_r_size
+        six_r_w_1_t_7 = six_r_end_p1_in_axes5_y*six_r_size
+        six_r_w_1_t_8 = sqrt(six_r_size_t + six_r_w_1_t_7*six_r_w_1_t_7)
+        inv_six_r_w_1_t_8 = 1.0/six_r_w_1_t_8
+        six_r_w_1_t_9 = inv_six_r_w_1_t_8*six_r_platform_joint_offset_x
+        six_r_w_1_t_10 = inv_six_r_w_1_t_8*six_r_w_1_t_7
+        six_r_w_1_t_11 = six_r_w_1_t_10*six_r_w_1_t_6
+        six_r_w_1_t_12 = six_r_w_1_t_11*six_r_w_1_t_9
+        six_r_w_1_t_13 = six_r_w_1_t_6 - six_r_w_1_t_10*six_r_w_1_t_11
+        six_r_w_1_t_14 = six_r_v_1_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_10*six_r_w_1_t_2
+        six_r_w_1_t_15 = six_r_v_1_in_axes5_y - six_r_w_1_t_14*six_r_w_1_t_9
+        six_r_w_1_t_16 = six_r_w_1_t_2 + six_r_w_1_t_10*six_r_w_1_t_14
+        six_r_w_1_t_17 = six_r_w_1_t_10*six_r_w_1_t_4
+        six_r_w_1_t_18 = six_r_v_2_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_v_2_in_axes5_y - six_r_w_1_t_18*six_r_w_1_t_9
+        six_r_w_1_t_20 = six_r_w_1_t_4 + six_r_w_1_t_10*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_w_1_t_17 - six_r_v_3_in_axes5_y*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_3_in_axes5_y + six_r_w_1_t_21*six_r_w_1_t_9
+        six_r_w_1_t_23 = six_r_w_1_t_4 - six_r_w_1_t_10*six_r_w_1_t_21
+        six_r_w_1_t_24 = (
+        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_13*six_r_w_1_t_13 + six_r_w_1_t_5*six_r_w_1_t_5)
         )
-        six_r_w_1_t_2 = (
-        six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        inv_six_r_w_1_t_24 = 1.0/six_r_w_1_t_24
+        six_r_w_1_t_25 = inv_six_r_w_1_t_24*six_r_w_1_t_12
+        six_r_w_1_t_26 = inv_six_r_w_1_t_24*six_r_v_4_in_axes5_z
+        six_r_w_1_t_27 = inv_six_r_w_1_t_24*six_r_w_1_t_5
+        six_r_w_1_t_28 = inv_six_r_w_1_t_24*six_r_w_1_t_13
+        six_r_w_1_t_29 = (
+        six_r_w_1_t*six_r_w_1_t_27 + six_r_w_1_t_15*six_r_w_1_t_25 + six_r_w_1_t_16*six_r_w_1_t_28
+            - six_r_v_1_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_3 = (
-        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_30 = six_r_w_1_t_25*six_r_w_1_t_29 - six_r_w_1_t_15
+        six_r_w_1_t_31 = six_r_v_1_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_29
+        six_r_w_1_t_32 = six_r_w_1_t_27*six_r_w_1_t_29 - six_r_w_1_t
+        six_r_w_1_t_33 = six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_16
+        six_r_w_1_t_34 = six_r_w_1_t_27*six_r_w_1_t_3
+        six_r_w_1_t_35 = (
+        six_r_w_1_t_34 + six_r_w_1_t_19*six_r_w_1_t_25 + six_r_w_1_t_20*six_r_w_1_t_28 -
+            six_r_v_2_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_36 = six_r_w_1_t_25*six_r_w_1_t_35 - six_r_w_1_t_19
+        six_r_w_1_t_37 = six_r_v_2_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_35
+        six_r_w_1_t_38 = six_r_w_1_t_27*six_r_w_1_t_35 - six_r_w_1_t_3
+        six_r_w_1_t_39 = six_r_w_1_t_28*six_r_w_1_t_35 - six_r_w_1_t_20
+        six_r_w_1_t_40 = (
+        six_r_w_1_t_34 + six_r_w_1_t_22*six_r_w_1_t_25 + six_r_w_1_t_23*six_r_w_1_t_28 -
+            six_r_v_3_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_5 = six_r_size*six_r_w_1_t
-        six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
-        six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
-        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
-        six_r_w_1_t_9 = (
-        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
+        six_r_w_1_t_41 = six_r_w_1_t_25*six_r_w_1_t_40 - six_r_w_1_t_22
+        six_r_w_1_t_42 = six_r_v_3_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_40
+        six_r_w_1_t_43 = six_r_w_1_t_27*six_r_w_1_t_40 - six_r_w_1_t_3
+        six_r_w_1_t_44 = six_r_w_1_t_28*six_r_w_1_t_40 - six_r_w_1_t_23
+        six_r_w_1_t_45 = (
+        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_30*six_r_w_1_t_30 +
+            six_r_w_1_t_31*six_r_w_1_t_31 + six_r_w_1_t_32*six_r_w_1_t_32 +
+            six_r_w_1_t_33*six_r_w_1_t_33)
         )
-        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
-        six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
-        six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
-        inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
-        six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x
-        six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11
-        six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14
-        six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15
-        six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15
-        six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_14*six_r_w_1_t_6
-        six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18
-        six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18
-        six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8
-        six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21
-        six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22
-        six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22
-        six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13
-        six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25
-        six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25
-        six_r_w_1_t_28 = (
-        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_16*six_r_w_1_t_16 +
-            six_r_w_1_t_17*six_r_w_1_t_17 + six_r_w_1_t_9*six_r_w_1_t_9)
+        inv_six_r_w_1_t_45 = 1.0/six_r_w_1_t_45
+        six_r_w_1_t_46 = inv_six_r_w_1_t_45*six_r_v_1_in_axes5_x
+        six_r_w_1_t_47 = inv_six_r_w_1_t_45*six_r_w_1_t_30
+        six_r_w_1_t_48 = inv_six_r_w_1_t_45*six_r_w_1_t_31
+        six_r_w_1_t_49 = inv_six_r_w_1_t_45*six_r_w_1_t_32
+        six_r_w_1_t_50 = inv_six_r_w_1_t_45*six_r_w_1_t_33
+        six_r_w_1_t_51 = (
+        six_r_v_2_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_36*six_r_w_1_t_47 +
+            six_r_w_1_t_37*six_r_w_1_t_48 + six_r_w_1_t_38*six_r_w_1_t_49 +
+            six_r_w_1_t_39*six_r_w_1_t_50
         )
-        inv_six_r_w_1_t_28 = 1.0/six_r_w_1_t_28
-        six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16
-        six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z
-        six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9
-        six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17
-        six_r_w_1_t_33 = (
-        six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32 +
-            six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_52 = six_r_v_2_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_51
+        six_r_w_1_t_53 = six_r_w_1_t_36 - six_r_w_1_t_47*six_r_w_1_t_51
+        six_r_w_1_t_54 = six_r_w_1_t_37 - six_r_w_1_t_48*six_r_w_1_t_51
+        six_r_w_1_t_55 = six_r_w_1_t_38 - six_r_w_1_t_49*six_r_w_1_t_51
+        six_r_w_1_t_56 = six_r_w_1_t_39 - six_r_w_1_t_50*six_r_w_1_t_51
+        six_r_w_1_t_57 = (
+        six_r_v_3_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_41*six_r_w_1_t_47 +
+            six_r_w_1_t_42*six_r_w_1_t_48 + six_r_w_1_t_43*six_r_w_1_t_49 +
+            six_r_w_1_t_44*six_r_w_1_t_50
         )
-        six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19
-        six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33
-        six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5
-        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20
-        six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7
-        six_r_w_1_t_39 = (
-        six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32 -
-            six_r_v_2_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_58 = six_r_v_3_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_57
+        six_r_w_1_t_59 = six_r_w_1_t_41 - six_r_w_1_t_47*six_r_w_1_t_57
+        six_r_w_1_t_60 = six_r_w_1_t_42 - six_r_w_1_t_48*six_r_w_1_t_57
+        six_r_w_1_t_61 = six_r_w_1_t_43 - six_r_w_1_t_49*six_r_w_1_t_57
+        six_r_w_1_t_62 = six_r_w_1_t_44 - six_r_w_1_t_50*six_r_w_1_t_57
+        six_r_w_1_t_63 = (
+        sqrt(six_r_w_1_t_52*six_r_w_1_t_52 + six_r_w_1_t_53*six_r_w_1_t_53 +
+            six_r_w_1_t_54*six_r_w_1_t_54 + six_r_w_1_t_55*six_r_w_1_t_55 +
+            six_r_w_1_t_56*six_r_w_1_t_56)
         )
-        six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23
-        six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39
-        six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7
-        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24
-        six_r_w_1_t_44 = (
-        six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32 -
-            six_r_v_3_in_axes5_z*six_r_w_1_t_30
+        inv_six_r_w_1_t_63 = 1.0/six_r_w_1_t_63
+        six_r_w_1_t_64 = inv_six_r_w_1_t_63*six_r_w_1_t_52
+        six_r_w_1_t_65 = inv_six_r_w_1_t_63*six_r_w_1_t_53
+        six_r_w_1_t_66 = inv_six_r_w_1_t_63*six_r_w_1_t_54
+        six_r_w_1_t_67 = inv_six_r_w_1_t_63*six_r_w_1_t_55
+        six_r_w_1_t_68 = inv_six_r_w_1_t_63*six_r_w_1_t_56
+        six_r_w_1_t_69 = (
+        six_r_w_1_t_58*six_r_w_1_t_64 + six_r_w_1_t_59*six_r_w_1_t_65 +
+            six_r_w_1_t_60*six_r_w_1_t_66 + six_r_w_1_t_61*six_r_w_1_t_67 +
+            six_r_w_1_t_62*six_r_w_1_t_68
         )
-        six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26
-        six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44
-        six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7
-        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27
-        six_r_w_1_t_49 = (
-        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_34*six_r_w_1_t_34 +
-            six_r_w_1_t_35*six_r_w_1_t_35 + six_r_w_1_t_36*six_r_w_1_t_36 +
-            six_r_w_1_t_37*six_r_w_1_t_37)
+        six_r_w_1_t_70 = six_r_w_1_t_58 - six_r_w_1_t_64*six_r_w_1_t_69
+        six_r_w_1_t_71 = six_r_w_1_t_59 - six_r_w_1_t_65*six_r_w_1_t_69
+        six_r_w_1_t_72 = six_r_w_1_t_60 - six_r_w_1_t_66*six_r_w_1_t_69
+        six_r_w_1_t_73 = six_r_w_1_t_61 - six_r_w_1_t_67*six_r_w_1_t_69
+        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_69
+        six_r_w_1_t_75 = (
+        sqrt(six_r_w_1_t_70*six_r_w_1_t_70 + six_r_w_1_t_71*six_r_w_1_t_71 +
+            six_r_w_1_t_72*six_r_w_1_t_72 + six_r_w_1_t_73*six_r_w_1_t_73 +
+            six_r_w_1_t_74*six_r_w_1_t_74)
         )
-        inv_six_r_w_1_t_49 = 1.0/six_r_w_1_t_49
-        six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x
-        six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34
-        six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35
-        six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36
-        six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37
-        six_r_w_1_t_55 = (
-        six_r_v_2_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_40*six_r_w_1_t_51 +
-            six_r_w_1_t_41*six_r_w_1_t_52 + six_r_w_1_t_42*six_r_w_1_t_53 +
-            six_r_w_1_t_43*six_r_w_1_t_54
-        )
-        six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55
-        six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55
-        six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55
-        six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55
-        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55
-        six_r_w_1_t_61 = (
-        six_r_v_3_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_45*six_r_w_1_t_51 +
-            six_r_w_1_t_46*six_r_w_1_t_52 + six_r_w_1_t_47*six_r_w_1_t_53 +
-            six_r_w_1_t_48*six_r_w_1_t_54
-        )
-        six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61
-        six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61
-        six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61
-        six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61
-        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61
-        six_r_w_1_t_67 = (
-        sqrt(six_r_w_1_t_56*six_r_w_1_t_56 + six_r_w_1_t_57*six_r_w_1_t_57 +
-            six_r_w_1_t_58*six_r_w_1_t_58 + six_r_w_1_t_59*six_r_w_1_t_59 +
-            six_r_w_1_t_60*six_r_w_1_t_60)
-        )
-        inv_six_r_w_1_t_67 = 1.0/six_r_w_1_t_67
-        six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56
-        six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57
-        six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58
-        six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59
-        six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60
-        six_r_w_1_t_73 = (
-        six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69 +
-            six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72
-        )
-        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73
-        six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73
-        six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73
-        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73
-        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73
-        six_r_w_1_t_79 = (
-        sqrt(six_r_w_1_t_74*six_r_w_1_t_74 + six_r_w_1_t_75*six_r_w_1_t_75 +
-            six_r_w_1_t_76*six_r_w_1_t_76 + six_r_w_1_t_77*six_r_w_1_t_77 +
-            six_r_w_1_t_78*six_r_w_1_t_78)
-        )
+        inv_six_r_w_1_t_75 = 1.0/six_r_w_1_t_75
+        six_r_w_1_t_76 = inv_six_r_w_1_t_75*six_r_w_1_t_70
+        six_r_w_1_t_77 = inv_six_r_w_1_t_75*six_r_w_1_t_71
+        six_r_w_1_t_78 = inv_six_r_w_1_t_75*six_r_w_1_t_72
+        # (six_r-m1_w_1) moment part 1 of reciprocal wrench 1
+        six_r_m1_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_73
+        # (six_r-m2_w_1) moment part 2 of reciprocal wrench 1
+        six_r_m2_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_74
         # (six_r-w_2) force part of reciprocal wrench 2
-        inv_six_r_w_1_t_79 = 1.0/six_r_w_1_t_79
-        six_r_w_2_t = inv_six_r_w_1_t_79*six_r_w_1_t_74
-        six_r_w_2_t_2 = inv_six_r_w_1_t_79*six_r_w_1_t_75
-        six_r_w_2_t_3 = inv_six_r_w_1_t_79*six_r_w_1_t_76
-        six_r_w_2_t_4 = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73
-        six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 - six_r_w_2_t*six_r_w_2_t_4
-        six_r_w_2_in_axes5_y = six_r_w_2_t_2*six_r_w_2_t_4 - inv_six_r_w_1_t_67*six_r_w_1_t_69
-        six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 - six_r_w_2_t_3*six_r_w_2_t_4
+        six_r_w_2_t = inv_six_r_w_1_t_63*inv_six_r_w_1_t_75*six_r_w_1_t_69
+        six_r_w_2_in_axes5_x = inv_six_r_w_1_t_63*six_r_w_1_t_64 - six_r_w_1_t_76*six_r_w_2_t
+        six_r_w_2_in_axes5_y = six_r_w_1_t_77*six_r_w_2_t - inv_six_r_w_1_t_63*six_r_w_1_t_65
+        six_r_w_2_in_axes5_z = inv_six_r_w_1_t_63*six_r_w_1_t_66 - six_r_w_1_t_78*six_r_w_2_t
         six_r_w_2_x = (
         axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x + axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y +
             axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z
@@ -8539,20 +8625,26 @@ def _run_required(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z
         )
         # (six_r-m1_w_2) moment part 1 of reciprocal wrench 2
-        six_r_m1_w_2_t = inv_six_r_w_1_t_79*six_r_w_1_t_77
-        six_r_m1_w_2 = (
-        six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_71 - six_r_m1_w_2_t*six_r_w_2_t_4)
-        )
+        six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_67 - six_r_m1_w_1_t*six_r_w_2_t)
         # (six_r-m2_w_2) moment part 2 of reciprocal wrench 2
-        six_r_m2_w_2_t = inv_six_r_w_1_t_79*six_r_w_1_t_78
-        six_r_m2_w_2 = (
-        six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_72 - six_r_m2_w_2_t*six_r_w_2_t_4)
-        )
+        six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_68 - six_r_m2_w_1_t*six_r_w_2_t)
         # (six_r-o_2) moment part of reciprocal wrench 2
-        six_r_o_2_t = six_r_m1_w_2*six_r_n_m2_in_axes5_z
-        six_r_o_2_in_axes5_z = six_r_m2_w_2*six_r_n_m2_in_axes5_z
+        six_r_o_2_t = six_r_end_p1_in_axes5_y*six_r_m1_w_2
+        six_r_o_2_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_2
         six_r_o_2_in_axes5_y = (
         six_r_m1_w_2*six_r_n_m1_in_axes5_y - six_r_end_p1_in_axes5_z*six_r_m2_w_2
+        )
+        six_r_o_2_x_2 = (
+        axis_y_six_r_axes5_x*six_r_o_2_in_axes5_y + axis_z_six_r_axes5_x*six_r_o_2_in_axes5_z -
+            axis_x_six_r_axes5_x*six_r_o_2_t
+        )
+        six_r_o_2_y_2 = (
+        axis_y_six_r_axes5_y*six_r_o_2_in_axes5_y + axis_z_six_r_axes5_y*six_r_o_2_in_axes5_z -
+            axis_x_six_r_axes5_y*six_r_o_2_t
+        )
+        six_r_o_2_z_2 = (
+        axis_y_six_r_axes5_z*six_r_o_2_in_axes5_y + axis_z_six_r_axes5_z*six_r_o_2_in_axes5_z -
+            axis_x_six_r_axes5_z*six_r_o_2_t
         )
         # (six_r-eta_1) rate at which the joints turn along moment direction 1
         six_r_omega_in_axes5_x = (
@@ -8561,9 +8653,9 @@ def _run_required(m, X, V, A, q):
         six_r_omega_in_axes5_y = (
         axis_y_six_r_axes5_x*omega_x + axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z
         )
-        six_r_eta_1 = (
+        six_r_eta_1_2 = (
         six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_x
+            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_x
         )
         # (six_r-eta_2) rate at which the joints turn along moment direction 2
         six_r_omega_in_axes5_z = (
@@ -8571,111 +8663,125 @@ def _run_required(m, X, V, A, q):
         )
         six_r_eta_2_t = (
         six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_z
+            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_z
         )
         # (six_r-qd_1) rate of joint 1
-        six_r_qd_1_t = six_r_eta_1*six_r_size
-        six_r_qd_1_t_2 = six_r_eta_2_t*six_r_size
-        six_r_qd_1_t_3 = (
-        inv_six_r_w_1_t_79*(six_r_S_dot_in_axes5_y*six_r_w_2_t_2 + six_r_m2_w_2_t*six_r_qd_1_t_2 -
-            six_r_S_dot_in_axes5_x*six_r_w_2_t - six_r_S_dot_in_axes5_z*six_r_w_2_t_3 -
-            six_r_m1_w_2_t*six_r_qd_1_t)
+        six_r_qd_1_t_3 = six_r_S_dot_in_axes5_x*six_r_w_1_t_46
+        six_r_qd_1_t_4 = six_r_S_dot_in_axes5_y*six_r_w_1_t_47
+        six_r_qd_1_t_5 = six_r_S_dot_in_axes5_z*six_r_w_1_t_48
+        six_r_qd_1_t_6 = six_r_S_dot_in_axes5_x*six_r_w_1_t_64
+        six_r_qd_1_t_7 = six_r_S_dot_in_axes5_y*six_r_w_1_t_65
+        six_r_qd_1_t_8 = six_r_S_dot_in_axes5_z*six_r_w_1_t_66
+        six_r_qd_1_t_9 = six_r_S_dot_in_axes5_x*six_r_w_1_t_76
+        six_r_qd_1_t_10 = six_r_S_dot_in_axes5_y*six_r_w_1_t_77
+        six_r_qd_1_t_11 = six_r_S_dot_in_axes5_z*six_r_w_1_t_78
+        six_r_qd_1_t_15 = six_r_eta_1_2*six_r_size
+        six_r_qd_1_t_16 = six_r_eta_2_t*six_r_size
+        six_r_qd_1_t_17 = (
+        inv_six_r_w_1_t_75*(six_r_qd_1_t_10 + six_r_m2_w_1_t*six_r_qd_1_t_16 - six_r_qd_1_t_11 -
+            six_r_qd_1_t_9 - six_r_m1_w_1_t*six_r_qd_1_t_15)
         )
-        six_r_qd_1_t_4 = (
-        -inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_y*six_r_w_1_t_69 + six_r_qd_1_t_2*six_r_w_1_t_72
-            - six_r_S_dot_in_axes5_x*six_r_w_1_t_68 - six_r_S_dot_in_axes5_z*six_r_w_1_t_70 -
-            six_r_qd_1_t*six_r_w_1_t_71 - six_r_qd_1_t_3*six_r_w_1_t_73)
+        six_r_qd_1_t_18 = (
+        -inv_six_r_w_1_t_63*(six_r_qd_1_t_7 + six_r_qd_1_t_16*six_r_w_1_t_68 - six_r_qd_1_t_6 -
+            six_r_qd_1_t_8 - six_r_qd_1_t_15*six_r_w_1_t_67 - six_r_qd_1_t_17*six_r_w_1_t_69)
         )
         six_r_qd_1 = (
-        inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_x*six_r_w_1_t_50 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_52 + six_r_qd_1_t*six_r_w_1_t_53 +
-            six_r_qd_1_t_3*six_r_w_1_t_61 - six_r_S_dot_in_axes5_y*six_r_w_1_t_51 -
-            six_r_qd_1_t_2*six_r_w_1_t_54 - six_r_qd_1_t_4*six_r_w_1_t_55)
+        inv_six_r_w_1_t_45*(six_r_qd_1_t_3 + six_r_qd_1_t_5 + six_r_qd_1_t_15*six_r_w_1_t_49 +
+            six_r_qd_1_t_17*six_r_w_1_t_57 - six_r_qd_1_t_4 - six_r_qd_1_t_16*six_r_w_1_t_50 -
+            six_r_qd_1_t_18*six_r_w_1_t_51)
         )
         # (six_r-qd_4) rate of joint 4
-        six_r_qd_4_t = (
-        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_2*six_r_w_1_t_32
-            + six_r_qd_1_t_3*six_r_w_1_t_44 - six_r_S_dot_in_axes5_z*six_r_w_1_t_30 -
-            six_r_qd_1*six_r_w_1_t_33 - six_r_qd_1_t*six_r_w_1_t_31 -
-            six_r_qd_1_t_4*six_r_w_1_t_39)
+        six_r_qd_4_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_25
+        six_r_qd_4_t_2 = six_r_S_dot_in_axes5_z*six_r_w_1_t_26
+        six_r_qd_4_t_3 = (
+        inv_six_r_w_1_t_24*(six_r_qd_4_t + six_r_qd_1_t_16*six_r_w_1_t_28 +
+            six_r_qd_1_t_17*six_r_w_1_t_40 - six_r_qd_4_t_2 - six_r_qd_1*six_r_w_1_t_29 -
+            six_r_qd_1_t_15*six_r_w_1_t_27 - six_r_qd_1_t_18*six_r_w_1_t_35)
         )
         # (six_r-qd_5) rate of joint 5
-        six_r_qd_5_t = (
-        inv_six_r_w_1_t_12*(six_r_qd_1*six_r_w_1_t_18 + six_r_qd_1_t_2*six_r_w_1_t_14 +
-            six_r_qd_1_t_3*six_r_w_1_t_25 + six_r_qd_1_t_4*six_r_w_1_t_22 -
-            six_r_S_dot_in_axes5_y*six_r_w_1_t_13 - six_r_qd_4_t*six_r_w_1_t_15)
+        six_r_qd_5_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_9
+        six_r_qd_5_t_2 = (
+        inv_six_r_w_1_t_8*(six_r_qd_1*six_r_w_1_t_14 + six_r_qd_1_t_16*six_r_w_1_t_10 +
+            six_r_qd_1_t_17*six_r_w_1_t_21 + six_r_qd_1_t_18*six_r_w_1_t_18 - six_r_qd_5_t -
+            six_r_qd_4_t_3*six_r_w_1_t_11)
         )
         # (six_r-omega_1) angular velocity of link 1
-        six_r_omega_1_in_axes2_x = six_r_c_2*six_r_qd_1
-        six_r_omega_1_in_axes2_y = -six_r_qd_1*six_r_s_2
+        six_r_omega_1_in_axes2_x_2 = six_r_c_2*six_r_qd_1
+        six_r_omega_1_in_axes2_y_2 = -six_r_qd_1*six_r_s_2
         six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1
         six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1
         six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1
         # (six_r-W_1) centripetal tensor of link 1
-        six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y
-        six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z
-        six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
+        six_r_W_1_in_axes5_xy_2 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y
+        six_r_W_1_in_axes5_xz_2 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z
+        six_r_W_1_in_axes5_yz_2 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
         # (six_r-omega_2) angular velocity of link 2
-        six_r_omega_2_in_axes3_x = (
-        six_r_omega_1_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y
+        six_r_omega_2_in_axes3_x_2 = (
+        six_r_omega_1_in_axes2_x_2*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y_2
         )
-        six_r_omega_2_in_axes3_y = (
-        six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
+        six_r_omega_2_in_axes3_y_2 = (
+        six_r_c_3*six_r_omega_1_in_axes2_x_2 + six_r_omega_1_in_axes2_y_2*six_r_s_3
         )
-        six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_4
-        six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_4
-        six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_c_4*six_r_qd_1_t_4
+        six_r_omega_2_in_axes5_x_2 = (
+        six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_18
+        )
+        six_r_omega_2_in_axes5_y_2 = (
+        six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_18
+        )
+        six_r_omega_2_in_axes5_z_2 = (
+        six_r_omega_1_in_axes5_z + six_r_e_2_in_axes5_z*six_r_qd_1_t_18
+        )
         # (six_r-W_2) centripetal tensor of link 2
-        six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4
-        six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y
-        six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y
-        six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z
-        six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z
+        six_r_W_2_in_axes2_yz_2 = six_r_omega_1_in_axes2_y_2*six_r_qd_1_t_18
+        six_r_W_2_in_axes2_xy_2 = six_r_omega_1_in_axes2_x_2*six_r_omega_1_in_axes2_y_2
+        six_r_W_2_in_axes5_xy_2 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_y_2
+        six_r_W_2_in_axes5_xz_2 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_z_2
+        six_r_W_2_in_axes5_yz_2 = six_r_omega_2_in_axes5_y_2*six_r_omega_2_in_axes5_z_2
         # (six_r-omega_3) angular velocity of link 3
-        six_r_omega_3_in_axes3_z = six_r_qd_1_t_4 - six_r_qd_1_t_3
-        six_r_omega_3_in_axes4_x = (
-        six_r_omega_3_in_axes3_z*six_r_s_4 - six_r_c_4*six_r_omega_2_in_axes3_x
+        six_r_omega_3_in_axes3_z_2 = six_r_qd_1_t_18 - six_r_qd_1_t_17
+        six_r_omega_3_in_axes4_x_2 = (
+        six_r_h_4_t*six_r_omega_3_in_axes3_z_2 - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x_2
         )
-        six_r_omega_3_in_axes4_y = (
-        six_r_c_4*six_r_omega_3_in_axes3_z + six_r_omega_2_in_axes3_x*six_r_s_4
+        six_r_omega_3_in_axes4_y_2 = (
+        six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z_2 + six_r_h_4_t*six_r_omega_2_in_axes3_x_2
         )
-        six_r_omega_3_t = six_r_omega_3_in_axes4_x*six_r_s_5
-        six_r_omega_3_t_2 = six_r_c_5*six_r_omega_3_in_axes4_x
-        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_2_in_axes3_y
-        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_2_in_axes3_y*six_r_s_5
+        six_r_omega_3_t_3 = six_r_J_5_t*six_r_omega_3_in_axes4_x_2
+        six_r_omega_3_t_4 = six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x_2
+        six_r_omega_3_in_axes5_x_2 = (
+        six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y_2
+        )
+        six_r_omega_3_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_J_5_t*six_r_omega_2_in_axes3_y_2
         # (six_r-W_3) centripetal tensor of link 3
-        six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x
-        six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z
-        six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y
-        six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z
-        six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2
-        six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z
-        six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y
+        six_r_W_3_t_4 = six_r_omega_2_in_axes3_x_2*six_r_omega_2_in_axes3_x_2
+        six_r_W_3_t_5 = six_r_omega_3_in_axes3_z_2*six_r_omega_3_in_axes3_z_2
+        six_r_W_3_in_axes3_xy_2 = six_r_omega_2_in_axes3_x_2*six_r_omega_2_in_axes3_y_2
+        six_r_W_3_in_axes3_xz_2 = six_r_omega_2_in_axes3_x_2*six_r_omega_3_in_axes3_z_2
+        six_r_W_3_t_6 = six_r_W_3_t_4 + six_r_W_3_t_5
+        six_r_W_3_in_axes3_yz_2 = six_r_omega_2_in_axes3_y_2*six_r_omega_3_in_axes3_z_2
+        six_r_W_3_in_axes5_xy_2 = six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_y_2
         # (six_r-omega_4) angular velocity of link 4
-        six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t
-        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_4_in_axes4_z
-        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_4_in_axes4_z*six_r_s_5
+        six_r_omega_4_in_axes4_z_2 = six_r_omega_2_in_axes3_y_2 - six_r_qd_4_t_3
+        six_r_omega_4_in_axes5_x_2 = (
+        six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z_2
+        )
+        six_r_omega_4_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_J_5_t*six_r_omega_4_in_axes4_z_2
         # (six_r-W_4) centripetal tensor of link 4
-        six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y
-        six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z
-        six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z
-        six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y
+        six_r_W_4_in_axes4_xy_2 = six_r_omega_3_in_axes4_x_2*six_r_omega_3_in_axes4_y_2
+        six_r_W_4_in_axes4_xz_2 = six_r_omega_3_in_axes4_x_2*six_r_omega_4_in_axes4_z_2
+        six_r_W_4_in_axes4_yz_2 = six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes4_z_2
+        six_r_W_4_in_axes5_xy_2 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_y_2
         # (six_r-omega_5) angular velocity of link 5
-        six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y - six_r_qd_5_t
+        six_r_omega_5_in_axes5_z_2 = six_r_omega_3_in_axes4_y_2 - six_r_qd_5_t_2
         # (six_r-W_5) centripetal tensor of link 5
-        six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y
-        six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z
-        six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2
-        six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z
-        six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z
-        # (six_r-a_p) acceleration of the connection point without its centripetal part
-        six_r_a_p_x = t_ddot_x + alpha_y*six_r_q_z - alpha_z*six_r_q_y
-        six_r_a_p_y = t_ddot_y + alpha_z*six_r_q_x - alpha_x*six_r_q_z
-        six_r_a_p_z = t_ddot_z + alpha_x*six_r_q_y - alpha_y*six_r_q_x
+        six_r_W_5_t_4 = six_r_omega_4_in_axes5_y_2*six_r_omega_4_in_axes5_y_2
+        six_r_W_5_t_5 = six_r_omega_5_in_axes5_z_2*six_r_omega_5_in_axes5_z_2
+        six_r_W_5_t_6 = six_r_W_5_t_4 + six_r_W_5_t_5
+        six_r_W_5_in_axes5_xz_2 = six_r_omega_4_in_axes5_x_2*six_r_omega_5_in_axes5_z_2
+        six_r_W_5_in_axes5_yz_2 = six_r_omega_4_in_axes5_y_2*six_r_omega_5_in_axes5_z_2
         # (six_r-S_ddot) acceleration of the connection point
-        six_r_S_ddot_x = six_r_a_p_x + omega_y*six_r_S_dot_t_16 - omega_z*six_r_S_dot_t_15
-        six_r_S_ddot_y = six_r_a_p_y + omega_z*six_r_S_dot_t_14 - omega_x*six_r_S_dot_t_16
-        six_r_S_ddot_z = six_r_a_p_z + omega_x*six_r_S_dot_t_15 - omega_y*six_r_S_dot_t_14
+        six_r_S_ddot_x = t_ddot_x + B_p_xy*six_r_q_y + B_p_xz*six_r_q_z - W_p_t_4*six_r_q_x
+        six_r_S_ddot_y = t_ddot_y + B_p_yx*six_r_q_x + B_p_yz*six_r_q_z - W_p_t_5*six_r_q_y
+        six_r_S_ddot_z = t_ddot_z + B_p_zx*six_r_q_x + B_p_zy*six_r_q_y - W_p_t_6*six_r_q_z
         six_r_S_ddot_in_axes5_x = (
         axis_x_six_r_axes5_x*six_r_S_ddot_x + axis_x_six_r_axes5_y*six_r_S_ddot_y +
             axis_x_six_r_axes5_z*six_r_S_ddot_z
@@ -8689,201 +8795,224 @@ def _run_required(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_ddot_z
         )
         # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4
-        six_r_zeta_2_in_axes3_x = (
-        six_r_W_2_in_axes2_yz*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y
+        six_r_zeta_2_in_axes2_y_2 = -six_r_omega_1_in_axes2_x_2*six_r_qd_1_t_18
+        six_r_zeta_2_in_axes3_x_2 = (
+        six_r_W_2_in_axes2_yz_2*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y_2
         )
-        six_r_zeta_2_in_axes3_y = (
-        six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
+        six_r_zeta_2_in_axes3_y_2 = (
+        six_r_W_2_in_axes2_yz_2*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y_2
         )
-        six_r_zeta_2_t = six_r_c_4*six_r_zeta_2_in_axes3_x
-        six_r_zeta_2_in_axes5_z = six_r_s_4*six_r_zeta_2_in_axes3_x
-        six_r_zeta_2_in_axes5_x = six_r_c_5*six_r_zeta_2_in_axes3_y - six_r_s_5*six_r_zeta_2_t
-        six_r_zeta_2_in_axes5_y = -six_r_c_5*six_r_zeta_2_t - six_r_s_5*six_r_zeta_2_in_axes3_y
+        six_r_zeta_2_t_2 = six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x_2
+        six_r_zeta_2_in_axes5_z_2 = six_r_h_4_t*six_r_zeta_2_in_axes3_x_2
+        six_r_zeta_2_in_axes5_x_2 = (
+        six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y_2 - six_r_J_5_t*six_r_zeta_2_t_2
+        )
+        six_r_zeta_2_in_axes5_y_2 = (
+        -six_r_J_5_t*six_r_zeta_2_in_axes3_y_2 - six_r_e_4_in_axes5_x*six_r_zeta_2_t_2
+        )
         # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        six_r_zeta_3_t = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3
-        six_r_zeta_3_in_axes3_y = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3
+        six_r_zeta_3_t_2 = six_r_omega_2_in_axes3_y_2*six_r_qd_1_t_17
+        six_r_zeta_3_in_axes3_y = six_r_omega_2_in_axes3_x_2*six_r_qd_1_t_17
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
-        six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x - six_r_zeta_3_t
-        six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y + six_r_zeta_3_in_axes3_y
-        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_c_4
-        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_s_4
+        six_r_beta_3_in_axes3_x_2 = six_r_zeta_2_in_axes3_x_2 - six_r_zeta_3_t_2
+        six_r_beta_3_in_axes3_y_2 = six_r_zeta_2_in_axes3_y_2 + six_r_zeta_3_in_axes3_y
+        six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*six_r_e_2_in_axes5_z
+        six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*six_r_h_4_t
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        six_r_zeta_4_in_axes4_x = -six_r_omega_3_in_axes4_y*six_r_qd_4_t
-        six_r_zeta_4_in_axes4_y = six_r_omega_3_in_axes4_x*six_r_qd_4_t
+        six_r_zeta_4_in_axes4_x_2 = -six_r_omega_3_in_axes4_y_2*six_r_qd_4_t_3
+        six_r_zeta_4_in_axes4_y = six_r_omega_3_in_axes4_x_2*six_r_qd_4_t_3
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
-        six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t
-        six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_zeta_4_in_axes4_y
-        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_c_5
-        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*six_r_s_5
-        six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*six_r_s_5
-        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_c_5 - six_r_beta_4_t_2
+        six_r_beta_4_in_axes4_x_2 = six_r_zeta_4_in_axes4_x_2 - six_r_beta_3_t_2
+        six_r_beta_4_in_axes4_y_2 = six_r_beta_3_in_axes4_y_2 + six_r_zeta_4_in_axes4_y
+        six_r_beta_4_t_3 = six_r_beta_3_in_axes3_y_2*six_r_e_4_in_axes5_x
+        six_r_beta_4_in_axes5_x_2 = six_r_beta_4_t_3 + six_r_J_5_t*six_r_beta_4_in_axes4_x_2
+        six_r_beta_4_t_4 = six_r_J_5_t*six_r_beta_3_in_axes3_y_2
+        six_r_beta_4_in_axes5_y_2 = (
+        six_r_beta_4_in_axes4_x_2*six_r_e_4_in_axes5_x - six_r_beta_4_t_4
+        )
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
-        six_r_zeta_5_t = six_r_omega_4_in_axes5_y*six_r_qd_5_t
-        six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x*six_r_qd_5_t
+        six_r_zeta_5_t_2 = six_r_omega_4_in_axes5_y_2*six_r_qd_5_t_2
+        six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x_2*six_r_qd_5_t_2
         # (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations
-        six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x - six_r_zeta_5_t
-        six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y + six_r_zeta_5_in_axes5_y
+        six_r_beta_5_in_axes5_x_2 = six_r_beta_4_in_axes5_x_2 - six_r_zeta_5_t_2
+        six_r_beta_5_in_axes5_y_2 = six_r_beta_4_in_axes5_y_2 + six_r_zeta_5_in_axes5_y
         # (six_r-bias) acceleration of the connection point at zero joint accelerations
         six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
-        six_r_bias_t = six_r_joint2_offset_x*six_r_s_2
-        six_r_bias_t_2 = six_r_bias_t*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
-        six_r_bias_t_3 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t*six_r_s_3
-        six_r_bias_t_4 = six_r_bias_t_2*six_r_c_4
-        six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_s_4
-        six_r_d_2_in_axes5_x = six_r_bias_t_3*six_r_c_5 - six_r_bias_t_4*six_r_s_5
-        six_r_d_2_in_axes5_y = -six_r_bias_t_3*six_r_s_5 - six_r_bias_t_4*six_r_c_5
-        six_r_bias_t_5 = six_r_joint3_offset_x*six_r_s_3
-        six_r_bias_t_6 = six_r_c_3*six_r_joint3_offset_x
-        six_r_bias_t_7 = six_r_bias_t_5*six_r_c_4
-        six_r_d_3_in_axes5_z = six_r_bias_t_5*six_r_s_4
-        six_r_d_3_in_axes5_x = six_r_bias_t_6*six_r_c_5 - six_r_bias_t_7*six_r_s_5
-        six_r_d_3_in_axes5_y = -six_r_bias_t_6*six_r_s_5 - six_r_bias_t_7*six_r_c_5
-        six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x
-        six_r_bias_t_8 = six_r_joint4_offset_x*six_r_s_5
-        six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x
-        six_r_bias_t_9 = six_r_joint5_offset_x*six_r_s_5
-        six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y
-        six_r_bias_t_11 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x
-        six_r_bias_t_12 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
-        six_r_bias_t_13 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
-        six_r_bias_t_14 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
-        six_r_bias_t_15 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
-        six_r_bias_t_16 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
-        six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
-        six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y
-        six_r_bias_in_axes5_x = (
-        six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y + six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
-            six_r_W_5_t_3*six_r_platform_joint_offset_x - six_r_bias_t_8*(six_r_W_3_in_axes5_xy -
-            six_r_beta_3_in_axes4_y) - six_r_bias_t_9*(six_r_W_4_in_axes5_xy -
-            six_r_beta_4_in_axes4_y) - six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
-            six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
-            six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) - six_r_d_5_in_axes5_x*(six_r_W_5_t
-            + six_r_bias_t_10)
+        six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_4 = six_r_bias_t_3*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
+        six_r_bias_t_5 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t_3*six_r_s_3
+        six_r_bias_t_6 = six_r_bias_t_4*six_r_e_2_in_axes5_z
+        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_h_4_t
+        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_6
+        six_r_d_2_in_axes5_y = -six_r_J_5_t*six_r_bias_t_5 - six_r_bias_t_6*six_r_e_4_in_axes5_x
+        six_r_bias_t_10 = six_r_joint3_offset_x*six_r_s_3
+        six_r_bias_t_11 = six_r_c_3*six_r_joint3_offset_x
+        six_r_bias_t_12 = six_r_bias_t_10*six_r_e_2_in_axes5_z
+        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_h_4_t
+        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_12
+        six_r_d_3_in_axes5_y = -six_r_J_5_t*six_r_bias_t_11 - six_r_bias_t_12*six_r_e_4_in_axes5_x
+        six_r_d_4_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint4_offset_x
+        six_r_bias_t_16 = six_r_J_5_t*six_r_joint4_offset_x
+        six_r_d_5_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint5_offset_x
+        six_r_bias_t_17 = six_r_J_5_t*six_r_joint5_offset_x
+        six_r_bias_t_19 = six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes4_y_2
+        six_r_bias_t_20 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_x_2
+        six_r_bias_t_21 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
+        six_r_bias_t_22 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
+        six_r_bias_t_23 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
+        six_r_bias_t_24 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_x_2
+        six_r_bias_t_25 = six_r_omega_2_in_axes5_y_2*six_r_omega_2_in_axes5_y_2
+        six_r_bias_t_26 = six_r_omega_2_in_axes5_z_2*six_r_omega_2_in_axes5_z_2
+        six_r_bias_t_27 = six_r_W_4_in_axes5_xy_2 + six_r_beta_4_in_axes4_y_2
+        six_r_bias_in_axes5_x_2 = (
+        six_r_W_1_in_axes5_xy_2*six_r_d_2_in_axes5_y +
+            six_r_W_1_in_axes5_xz_2*six_r_d_2_in_axes5_z +
+            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy_2 - six_r_zeta_2_in_axes5_z_2) +
+            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz_2 + six_r_zeta_2_in_axes5_y_2) -
+            six_r_W_5_t_6*six_r_platform_joint_offset_x - six_r_bias_t_16*(six_r_W_3_in_axes5_xy_2
+            - six_r_beta_3_in_axes4_y_2) - six_r_bias_t_17*(six_r_W_4_in_axes5_xy_2 -
+            six_r_beta_4_in_axes4_y_2) - six_r_d_2_in_axes5_x*(six_r_bias_t_22 + six_r_bias_t_23)
+            - six_r_d_3_in_axes5_x*(six_r_bias_t_25 + six_r_bias_t_26) -
+            six_r_d_4_in_axes5_x*(six_r_bias_t_19 +
+            six_r_omega_3_in_axes5_y_2*six_r_omega_3_in_axes5_y_2) -
+            six_r_d_5_in_axes5_x*(six_r_W_5_t_4 + six_r_bias_t_19)
         )
-        six_r_bias_in_axes5_y = (
-        six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z +
-            six_r_bias_t_18*six_r_d_5_in_axes5_x + six_r_bias_t_18*six_r_platform_joint_offset_x +
-            six_r_bias_t_8*(six_r_bias_t_10 + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
-            six_r_bias_t_9*(six_r_bias_t_10 + six_r_bias_t_11) +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17)
+        six_r_bias_in_axes5_y_2 = (
+        six_r_W_1_in_axes5_xy_2*six_r_d_2_in_axes5_x +
+            six_r_W_1_in_axes5_yz_2*six_r_d_2_in_axes5_z + six_r_bias_t_16*(six_r_bias_t_19 +
+            six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_x_2) +
+            six_r_bias_t_17*(six_r_bias_t_19 + six_r_bias_t_20) +
+            six_r_bias_t_27*six_r_d_5_in_axes5_x + six_r_bias_t_27*six_r_platform_joint_offset_x +
+            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy_2 + six_r_zeta_2_in_axes5_z_2) +
+            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz_2 - six_r_zeta_2_in_axes5_x_2) +
+            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy_2 + six_r_beta_3_in_axes4_y_2) -
+            six_r_d_2_in_axes5_y*(six_r_bias_t_21 + six_r_bias_t_23) -
+            six_r_d_3_in_axes5_y*(six_r_bias_t_24 + six_r_bias_t_26)
         )
-        six_r_bias_in_axes5_z = (
-        six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_c_5 +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
-            six_r_beta_5_in_axes5_y) - six_r_bias_t_8*(six_r_beta_4_t +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*six_r_s_5) -
-            six_r_bias_t_9*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
-            six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16)
+        six_r_bias_in_axes5_z_2 = (
+        six_r_W_1_in_axes5_xz_2*six_r_d_2_in_axes5_x +
+            six_r_W_1_in_axes5_yz_2*six_r_d_2_in_axes5_y +
+            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz_2 - six_r_zeta_2_in_axes5_y_2) +
+            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz_2 + six_r_zeta_2_in_axes5_x_2) +
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_4 + six_r_beta_3_t_2*six_r_e_4_in_axes5_x +
+            six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_x_2) +
+            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_x_2 -
+            six_r_beta_4_in_axes5_y_2) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz_2 -
+            six_r_beta_5_in_axes5_y_2) - six_r_bias_t_16*(six_r_beta_4_t_3 +
+            six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_y_2 - six_r_J_5_t*six_r_beta_3_t_2)
+            - six_r_bias_t_17*(six_r_beta_4_in_axes5_x_2 +
+            six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_y_2) -
+            six_r_d_2_in_axes5_z*(six_r_bias_t_21 + six_r_bias_t_22) -
+            six_r_d_3_in_axes5_z*(six_r_bias_t_24 + six_r_bias_t_25)
         )
         # (six_r-rel) acceleration of the connection point left to the joint accelerations
-        six_r_rel_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_bias_in_axes5_x
-        six_r_rel_in_axes5_y = six_r_S_ddot_in_axes5_y - six_r_bias_in_axes5_y
-        six_r_rel_in_axes5_z = six_r_S_ddot_in_axes5_z - six_r_bias_in_axes5_z
+        six_r_rel_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_bias_in_axes5_x_2
+        six_r_rel_in_axes5_y = six_r_S_ddot_in_axes5_y - six_r_bias_in_axes5_y_2
+        six_r_rel_in_axes5_z = six_r_S_ddot_in_axes5_z - six_r_bias_in_axes5_z_2
         # (six_r-nd_m1) rate of moment direction 1
         six_r_nd_m1_t = (
         six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_z -
             six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_x
         )
-        six_r_nd_m1_in_axes5_x = -six_r_nd_m1_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x
-        six_r_nd_m1_in_axes5_y = six_r_eta_2_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y
+        six_r_nd_m1_in_axes5_x_2 = (
+        -six_r_nd_m1_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x_2
+        )
+        six_r_nd_m1_in_axes5_y_2 = (
+        six_r_eta_2_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y_2
+        )
         # (six_r-nu_1) bias of the angular acceleration along moment direction 1
-        six_r_nu_1_t = six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y
-        six_r_nu_1_t_2 = (
-        six_r_beta_5_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_beta_5_in_axes5_y*six_r_n_m1_in_axes5_y
+        six_r_nu_1_t_7 = six_r_end_p1_in_axes5_y*six_r_omega_4_in_axes5_y_2
+        six_r_nu_1_t_8 = (
+        six_r_beta_5_in_axes5_x_2*six_r_end_p1_in_axes5_y -
+            six_r_beta_5_in_axes5_y_2*six_r_n_m1_in_axes5_y
         )
-        six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - six_r_omega_in_axes5_x
-        six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - six_r_omega_in_axes5_y
-        six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - six_r_omega_in_axes5_z
-        six_r_nu_1_t_6 = (
-        six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 + six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
-            six_r_nu_1_t_5*(six_r_nu_1_t + six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x)
+        six_r_nu_1_t_9 = six_r_omega_4_in_axes5_x_2 - six_r_omega_in_axes5_x
+        six_r_nu_1_t_10 = six_r_omega_4_in_axes5_y_2 - six_r_omega_in_axes5_y
+        six_r_nu_1_t_11 = six_r_omega_5_in_axes5_z_2 - six_r_omega_in_axes5_z
+        six_r_nu_1_t_12 = (
+        six_r_nd_m1_in_axes5_x_2*six_r_nu_1_t_9 + six_r_nd_m1_in_axes5_y_2*six_r_nu_1_t_10 +
+            six_r_nu_1_t_11*(six_r_nu_1_t_7 + six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x_2)
         )
-        six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6
+        six_r_nu_1_2 = six_r_nu_1_t_8 - six_r_nu_1_t_12
         # (six_r-nd_m2) rate of moment direction 2
-        six_r_nd_m2_in_axes5_y = six_r_eta_1 - six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y
-        six_r_nd_m2_in_axes5_z = six_r_nd_m1_t - six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z
+        six_r_nd_m2_in_axes5_y_2 = (
+        six_r_eta_1_2 - six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y_2
+        )
+        six_r_nd_m2_in_axes5_z_2 = (
+        six_r_nd_m1_t - six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z_2
+        )
         # (six_r-nu_2) bias of the angular acceleration along moment direction 2
-        six_r_nu_2_t = (
-        six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_y*six_r_n_m2_in_axes5_z
+        six_r_nu_2_t_3 = (
+        six_r_beta_5_in_axes5_y_2*six_r_end_p1_in_axes5_z -
+            six_r_beta_4_in_axes4_y_2*six_r_end_p1_in_axes5_y
         )
-        six_r_nu_2_t_2 = (
-        six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 + six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
-            six_r_nu_1_t_3*(six_r_nu_1_t + six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z)
+        six_r_nu_2_t_4 = (
+        six_r_nd_m2_in_axes5_y_2*six_r_nu_1_t_10 + six_r_nd_m2_in_axes5_z_2*six_r_nu_1_t_11 +
+            six_r_nu_1_t_9*(six_r_nu_1_t_7 + six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z_2)
         )
-        six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2
+        six_r_nu_2_2 = six_r_nu_2_t_3 - six_r_nu_2_t_4
         # (six_r-etad_1) acceleration with which the joints turn along moment direction 1
         six_r_alpha_in_axes5_y = (
         alpha_x*axis_y_six_r_axes5_x + alpha_y*axis_y_six_r_axes5_y + alpha_z*axis_y_six_r_axes5_z
         )
         six_r_etad_1_t = (
-        six_r_n_m2_in_axes5_z*(alpha_x*axis_x_six_r_axes5_x + alpha_y*axis_x_six_r_axes5_y +
+        six_r_end_p1_in_axes5_y*(alpha_x*axis_x_six_r_axes5_x + alpha_y*axis_x_six_r_axes5_y +
             alpha_z*axis_x_six_r_axes5_z) - six_r_alpha_in_axes5_y*six_r_n_m1_in_axes5_y
         )
-        six_r_etad_1 = six_r_nu_1 - six_r_etad_1_t
+        six_r_etad_1 = six_r_nu_1_2 - six_r_etad_1_t
         # (six_r-etad_2) acceleration with which the joints turn along moment direction 2
         six_r_etad_2_t = (
         six_r_alpha_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_n_m2_in_axes5_z*(alpha_x*axis_z_six_r_axes5_x + alpha_y*axis_z_six_r_axes5_y +
+            six_r_end_p1_in_axes5_y*(alpha_x*axis_z_six_r_axes5_x + alpha_y*axis_z_six_r_axes5_y +
             alpha_z*axis_z_six_r_axes5_z)
         )
-        six_r_etad_2 = six_r_nu_2 - six_r_etad_2_t
+        six_r_etad_2 = six_r_nu_2_2 - six_r_etad_2_t
         # (six_r-qdd_1) acceleration of joint 1
         six_r_qdd_1_t = six_r_etad_1*six_r_size
         six_r_qdd_1_t_2 = six_r_etad_2*six_r_size
         six_r_qdd_1_t_3 = (
-        inv_six_r_w_1_t_79*(six_r_m1_w_2_t*six_r_qdd_1_t + six_r_m2_w_2_t*six_r_qdd_1_t_2 +
-            six_r_rel_in_axes5_x*six_r_w_2_t + six_r_rel_in_axes5_z*six_r_w_2_t_3 -
-            six_r_rel_in_axes5_y*six_r_w_2_t_2)
+        inv_six_r_w_1_t_75*(six_r_m1_w_1_t*six_r_qdd_1_t + six_r_m2_w_1_t*six_r_qdd_1_t_2 +
+            six_r_rel_in_axes5_x*six_r_w_1_t_76 + six_r_rel_in_axes5_z*six_r_w_1_t_78 -
+            six_r_rel_in_axes5_y*six_r_w_1_t_77)
         )
         six_r_qdd_1_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_qdd_1_t*six_r_w_1_t_71 + six_r_qdd_1_t_2*six_r_w_1_t_72 +
-            six_r_rel_in_axes5_x*six_r_w_1_t_68 + six_r_rel_in_axes5_z*six_r_w_1_t_70 -
-            six_r_qdd_1_t_3*six_r_w_1_t_73 - six_r_rel_in_axes5_y*six_r_w_1_t_69)
+        inv_six_r_w_1_t_63*(six_r_qdd_1_t*six_r_w_1_t_67 + six_r_qdd_1_t_2*six_r_w_1_t_68 +
+            six_r_rel_in_axes5_x*six_r_w_1_t_64 + six_r_rel_in_axes5_z*six_r_w_1_t_66 -
+            six_r_qdd_1_t_3*six_r_w_1_t_69 - six_r_rel_in_axes5_y*six_r_w_1_t_65)
         )
         six_r_qdd_1_t_5 = (
-        inv_six_r_w_1_t_49*(six_r_qdd_1_t_3*six_r_w_1_t_61 + six_r_qdd_1_t_4*six_r_w_1_t_55 +
-            six_r_rel_in_axes5_y*six_r_w_1_t_51 - six_r_qdd_1_t*six_r_w_1_t_53 -
-            six_r_qdd_1_t_2*six_r_w_1_t_54 - six_r_rel_in_axes5_x*six_r_w_1_t_50 -
-            six_r_rel_in_axes5_z*six_r_w_1_t_52)
+        inv_six_r_w_1_t_45*(six_r_qdd_1_t_3*six_r_w_1_t_57 + six_r_qdd_1_t_4*six_r_w_1_t_51 +
+            six_r_rel_in_axes5_y*six_r_w_1_t_47 - six_r_qdd_1_t*six_r_w_1_t_49 -
+            six_r_qdd_1_t_2*six_r_w_1_t_50 - six_r_rel_in_axes5_x*six_r_w_1_t_46 -
+            six_r_rel_in_axes5_z*six_r_w_1_t_48)
         )
         # (six_r-qdd_4) acceleration of joint 4
         six_r_qdd_4 = (
-        inv_six_r_w_1_t_28*(six_r_qdd_1_t*six_r_w_1_t_31 + six_r_qdd_1_t_2*six_r_w_1_t_32 +
-            six_r_qdd_1_t_3*six_r_w_1_t_44 + six_r_qdd_1_t_4*six_r_w_1_t_39 +
-            six_r_rel_in_axes5_z*six_r_w_1_t_30 - six_r_qdd_1_t_5*six_r_w_1_t_33 -
-            six_r_rel_in_axes5_y*six_r_w_1_t_29)
+        inv_six_r_w_1_t_24*(six_r_qdd_1_t*six_r_w_1_t_27 + six_r_qdd_1_t_2*six_r_w_1_t_28 +
+            six_r_qdd_1_t_3*six_r_w_1_t_40 + six_r_qdd_1_t_4*six_r_w_1_t_35 +
+            six_r_rel_in_axes5_z*six_r_w_1_t_26 - six_r_qdd_1_t_5*six_r_w_1_t_29 -
+            six_r_rel_in_axes5_y*six_r_w_1_t_25)
+        )
+        # (six_r-qdd_5) acceleration of joint 5
+        six_r_qdd_5 = (
+        inv_six_r_w_1_t_8*(six_r_qdd_1_t_2*six_r_w_1_t_10 + six_r_qdd_1_t_3*six_r_w_1_t_21 +
+            six_r_qdd_1_t_5*six_r_w_1_t_14 + six_r_rel_in_axes5_y*six_r_w_1_t_9 -
+            six_r_qdd_1_t_4*six_r_w_1_t_18 - six_r_qdd_4*six_r_w_1_t_11)
         )
         # (six_r-alpha_1) angular acceleration of link 1
         six_r_alpha_1_t = six_r_c_2*six_r_qdd_1_t_5
         six_r_alpha_1_in_axes2_y = six_r_qdd_1_t_5*six_r_s_2
         # (six_r-alpha_2) angular acceleration of link 2
-        six_r_alpha_2_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_t
-        six_r_alpha_2_in_axes2_y = six_r_alpha_1_in_axes2_y + six_r_zeta_2_in_axes2_y
+        six_r_alpha_2_in_axes2_x = six_r_W_2_in_axes2_yz_2 - six_r_alpha_1_t
+        six_r_alpha_2_in_axes2_y = six_r_alpha_1_in_axes2_y + six_r_zeta_2_in_axes2_y_2
         # (six_r-B_2) acceleration tensor of link 2
-        six_r_B_2_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_t_4
-        six_r_B_2_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_t_4
-        six_r_B_2_in_axes2_zx = -six_r_alpha_2_in_axes2_y - six_r_zeta_2_in_axes2_y
-        six_r_B_2_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_in_axes2_x
+        six_r_B_2_in_axes2_xy = six_r_W_2_in_axes2_xy_2 - six_r_qdd_1_t_4
+        six_r_B_2_in_axes2_yx = six_r_W_2_in_axes2_xy_2 + six_r_qdd_1_t_4
+        six_r_B_2_in_axes2_zx = -six_r_alpha_2_in_axes2_y - six_r_zeta_2_in_axes2_y_2
+        six_r_B_2_in_axes2_zy = six_r_W_2_in_axes2_yz_2 + six_r_alpha_2_in_axes2_x
         # (six_r-alpha_3) angular acceleration of link 3
         six_r_alpha_3_in_axes3_x = (
-        six_r_alpha_2_in_axes2_x*six_r_s_3 - six_r_zeta_3_t - six_r_alpha_2_in_axes2_y*six_r_c_3
+        six_r_alpha_2_in_axes2_x*six_r_s_3 - six_r_zeta_3_t_2 - six_r_alpha_2_in_axes2_y*six_r_c_3
         )
         six_r_alpha_3_in_axes3_y = (
         six_r_zeta_3_in_axes3_y + six_r_alpha_2_in_axes2_x*six_r_c_3 +
@@ -8891,53 +9020,49 @@ def _run_required(m, X, V, A, q):
         )
         six_r_alpha_3_in_axes3_z = six_r_qdd_1_t_3 + six_r_qdd_1_t_4
         # (six_r-B_3) acceleration tensor of link 3
-        six_r_B_3_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_in_axes3_z
-        six_r_B_3_in_axes3_xz = six_r_W_3_in_axes3_xz + six_r_alpha_3_in_axes3_y
-        six_r_B_3_in_axes3_yx = six_r_W_3_in_axes3_xy + six_r_alpha_3_in_axes3_z
-        six_r_B_3_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_in_axes3_x
-        six_r_B_3_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_in_axes3_y
-        six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_in_axes3_x
+        six_r_B_3_in_axes3_xy = six_r_W_3_in_axes3_xy_2 - six_r_alpha_3_in_axes3_z
+        six_r_B_3_in_axes3_xz = six_r_W_3_in_axes3_xz_2 + six_r_alpha_3_in_axes3_y
+        six_r_B_3_in_axes3_yx = six_r_W_3_in_axes3_xy_2 + six_r_alpha_3_in_axes3_z
+        six_r_B_3_in_axes3_yz = six_r_W_3_in_axes3_yz_2 - six_r_alpha_3_in_axes3_x
+        six_r_B_3_in_axes3_zx = six_r_W_3_in_axes3_xz_2 - six_r_alpha_3_in_axes3_y
+        six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz_2 + six_r_alpha_3_in_axes3_x
         # (six_r-alpha_4) angular acceleration of link 4
         six_r_alpha_4_in_axes4_x = (
-        six_r_zeta_4_in_axes4_x + six_r_alpha_3_in_axes3_z*six_r_s_4 -
-            six_r_alpha_3_in_axes3_x*six_r_c_4
+        six_r_zeta_4_in_axes4_x_2 + six_r_alpha_3_in_axes3_z*six_r_h_4_t -
+            six_r_alpha_3_in_axes3_x*six_r_e_2_in_axes5_z
         )
         six_r_alpha_4_in_axes4_y = (
-        six_r_zeta_4_in_axes4_y + six_r_alpha_3_in_axes3_x*six_r_s_4 +
-            six_r_alpha_3_in_axes3_z*six_r_c_4
+        six_r_zeta_4_in_axes4_y + six_r_alpha_3_in_axes3_x*six_r_h_4_t +
+            six_r_alpha_3_in_axes3_z*six_r_e_2_in_axes5_z
         )
         six_r_alpha_4_in_axes4_z = six_r_alpha_3_in_axes3_y + six_r_qdd_4
         # (six_r-B_4) acceleration tensor of link 4
-        six_r_B_4_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_in_axes4_z
-        six_r_B_4_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_in_axes4_y
-        six_r_B_4_in_axes4_yx = six_r_W_4_in_axes4_xy + six_r_alpha_4_in_axes4_z
-        six_r_B_4_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_in_axes4_x
-        six_r_B_4_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_in_axes4_y
-        six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_in_axes4_x
+        six_r_B_4_in_axes4_xy = six_r_W_4_in_axes4_xy_2 - six_r_alpha_4_in_axes4_z
+        six_r_B_4_in_axes4_xz = six_r_W_4_in_axes4_xz_2 + six_r_alpha_4_in_axes4_y
+        six_r_B_4_in_axes4_yx = six_r_W_4_in_axes4_xy_2 + six_r_alpha_4_in_axes4_z
+        six_r_B_4_in_axes4_yz = six_r_W_4_in_axes4_yz_2 - six_r_alpha_4_in_axes4_x
+        six_r_B_4_in_axes4_zx = six_r_W_4_in_axes4_xz_2 - six_r_alpha_4_in_axes4_y
+        six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz_2 + six_r_alpha_4_in_axes4_x
         # (six_r-alpha_5) angular acceleration of link 5
         six_r_alpha_5_in_axes5_x = (
-        six_r_alpha_4_in_axes4_x*six_r_s_5 + six_r_alpha_4_in_axes4_z*six_r_c_5 - six_r_zeta_5_t
+        six_r_J_5_t*six_r_alpha_4_in_axes4_x + six_r_alpha_4_in_axes4_z*six_r_e_4_in_axes5_x -
+            six_r_zeta_5_t_2
         )
         six_r_alpha_5_in_axes5_y = (
-        six_r_zeta_5_in_axes5_y + six_r_alpha_4_in_axes4_x*six_r_c_5 -
-            six_r_alpha_4_in_axes4_z*six_r_s_5
+        six_r_zeta_5_in_axes5_y + six_r_alpha_4_in_axes4_x*six_r_e_4_in_axes5_x -
+            six_r_J_5_t*six_r_alpha_4_in_axes4_z
         )
-        six_r_alpha_5_in_axes5_z = (
-        six_r_alpha_4_in_axes4_y + inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*six_r_w_1_t_14 +
-            six_r_qdd_1_t_3*six_r_w_1_t_25 + six_r_qdd_1_t_5*six_r_w_1_t_18 +
-            six_r_rel_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_t_4*six_r_w_1_t_22 -
-            six_r_qdd_4*six_r_w_1_t_15)
-        )
+        six_r_alpha_5_in_axes5_z = six_r_alpha_4_in_axes4_y + six_r_qdd_5
         # (six_r-B_5) acceleration tensor of link 5
-        six_r_B_5_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_in_axes5_z
-        six_r_B_5_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_in_axes5_y
-        six_r_B_5_in_axes5_yx = six_r_W_4_in_axes5_xy + six_r_alpha_5_in_axes5_z
-        six_r_B_5_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_in_axes5_x
-        six_r_B_5_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_in_axes5_y
-        six_r_B_5_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_in_axes5_x
+        six_r_B_5_in_axes5_xy = six_r_W_4_in_axes5_xy_2 - six_r_alpha_5_in_axes5_z
+        six_r_B_5_in_axes5_xz = six_r_W_5_in_axes5_xz_2 + six_r_alpha_5_in_axes5_y
+        six_r_B_5_in_axes5_yx = six_r_W_4_in_axes5_xy_2 + six_r_alpha_5_in_axes5_z
+        six_r_B_5_in_axes5_yz = six_r_W_5_in_axes5_yz_2 - six_r_alpha_5_in_axes5_x
+        six_r_B_5_in_axes5_zx = six_r_W_5_in_axes5_xz_2 - six_r_alpha_5_in_axes5_y
+        six_r_B_5_in_axes5_zy = six_r_W_5_in_axes5_yz_2 + six_r_alpha_5_in_axes5_x
         # (six_r-a_o_3) acceleration of the origin of joint 3
-        six_r_a_o_3_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y
-        six_r_a_o_3_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4
+        six_r_a_o_3_t = six_r_omega_1_in_axes2_y_2*six_r_omega_1_in_axes2_y_2
+        six_r_a_o_3_t_2 = six_r_qd_1_t_18*six_r_qd_1_t_18
         six_r_a_o_3_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_t + six_r_a_o_3_t_2)
         six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*six_r_joint3_offset_x
         six_r_a_o_3_in_axes2_z = six_r_B_2_in_axes2_zx*six_r_joint3_offset_x
@@ -8951,7 +9076,7 @@ def _run_required(m, X, V, A, q):
         six_r_a_o_4_in_axes3_x = (
         six_r_a_o_3_in_axes3_x + six_r_B_3_in_axes3_xy*six_r_joint4_offset_x
         )
-        six_r_a_o_4_in_axes3_y = six_r_a_o_3_in_axes3_y - six_r_W_3_t_3*six_r_joint4_offset_x
+        six_r_a_o_4_in_axes3_y = six_r_a_o_3_in_axes3_y - six_r_W_3_t_6*six_r_joint4_offset_x
         six_r_a_o_4_in_axes3_z = (
         six_r_a_o_3_in_axes2_z + six_r_B_3_in_axes3_zy*six_r_joint4_offset_x
         )
@@ -8966,37 +9091,43 @@ def _run_required(m, X, V, A, q):
         six_r_acc_3_in_axes3_y = six_r_a_o_3_in_axes3_y - six_r_g_in_axes3_y
         six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - six_r_g_in_axes1_y
         # (six_r-f_3) inertia force of link 3 less its weight
-        six_r_f_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y
+        six_r_f_3_t = six_r_omega_2_in_axes3_y_2*six_r_omega_2_in_axes3_y_2
         six_r_f_3_in_axes3_x = (
         six_r_B_3_in_axes3_xy*six_r_h_3_in_spec3_x + six_r_B_3_in_axes3_xz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_in_axes3_x*six_r_link3_mass + six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
+            six_r_acc_3_in_axes3_x*six_r_link3_mass + six_r_h_3_in_spec3_y*(six_r_W_3_t_5 +
             six_r_f_3_t)
         )
         six_r_f_3_in_axes3_y = (
         six_r_B_3_in_axes3_yz*six_r_h_3_in_spec3_z + six_r_acc_3_in_axes3_y*six_r_link3_mass -
-            six_r_B_3_in_axes3_yx*six_r_h_3_in_spec3_y - six_r_W_3_t_3*six_r_h_3_in_spec3_x
+            six_r_B_3_in_axes3_yx*six_r_h_3_in_spec3_y - six_r_W_3_t_6*six_r_h_3_in_spec3_x
         )
         six_r_f_3_in_axes3_z = (
         six_r_B_3_in_axes3_zy*six_r_h_3_in_spec3_x + six_r_acc_3_in_axes3_z*six_r_link3_mass -
-            six_r_B_3_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
+            six_r_B_3_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t_4 +
             six_r_f_3_t)
         )
         # (six_r-acc_4) acceleration of the reference point of link 4, less gravity
+        six_r_g_in_axes4_x = (
+        six_r_g_in_axes1_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_g_in_axes3_x
+        )
+        six_r_g_in_axes4_y = (
+        six_r_e_2_in_axes5_z*six_r_g_in_axes1_y + six_r_g_in_axes3_x*six_r_h_4_t
+        )
         six_r_acc_4_in_axes4_x = (
-        six_r_a_o_4_in_axes3_z*six_r_s_4 + six_r_c_4*six_r_g_in_axes3_x -
-            six_r_a_o_4_in_axes3_x*six_r_c_4 - six_r_g_in_axes1_y*six_r_s_4
+        six_r_a_o_4_in_axes3_z*six_r_h_4_t - six_r_g_in_axes4_x -
+            six_r_a_o_4_in_axes3_x*six_r_e_2_in_axes5_z
         )
         six_r_acc_4_in_axes4_y = (
-        six_r_a_o_4_in_axes3_x*six_r_s_4 + six_r_a_o_4_in_axes3_z*six_r_c_4 -
-            six_r_c_4*six_r_g_in_axes1_y - six_r_g_in_axes3_x*six_r_s_4
+        six_r_a_o_4_in_axes3_x*six_r_h_4_t + six_r_a_o_4_in_axes3_z*six_r_e_2_in_axes5_z -
+            six_r_g_in_axes4_y
         )
         six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_y - six_r_g_in_axes3_y
         # (six_r-f_4) inertia force of link 4 less its weight
-        six_r_f_4_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x
-        six_r_f_4_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z
+        six_r_f_4_t = six_r_omega_3_in_axes4_x_2*six_r_omega_3_in_axes4_x_2
+        six_r_f_4_t_2 = six_r_omega_4_in_axes4_z_2*six_r_omega_4_in_axes4_z_2
         six_r_f_4_in_axes4_x = (
         six_r_B_4_in_axes4_xy*six_r_h_4_in_spec4_z + six_r_B_4_in_axes4_xz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_in_axes4_x*six_r_link4_mass - six_r_h_4_in_spec4_y*(six_r_bias_t_10 +
+            six_r_acc_4_in_axes4_x*six_r_link4_mass - six_r_h_4_in_spec4_y*(six_r_bias_t_19 +
             six_r_f_4_t_2)
         )
         six_r_f_4_in_axes4_y = (
@@ -9006,29 +9137,36 @@ def _run_required(m, X, V, A, q):
         )
         six_r_f_4_in_axes4_z = (
         six_r_B_4_in_axes4_zx*six_r_h_4_in_spec4_y + six_r_B_4_in_axes4_zy*six_r_h_4_in_spec4_z +
-            six_r_acc_4_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t_10 +
+            six_r_acc_4_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t_19 +
             six_r_f_4_t)
         )
-        six_r_f_4_in_axes3_x = six_r_f_4_in_axes4_y*six_r_s_4 - six_r_c_4*six_r_f_4_in_axes4_x
-        six_r_f_4_in_axes3_z = six_r_c_4*six_r_f_4_in_axes4_y + six_r_f_4_in_axes4_x*six_r_s_4
+        six_r_f_4_in_axes3_x = (
+        six_r_f_4_in_axes4_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_f_4_in_axes4_x
+        )
+        six_r_f_4_in_axes3_z = (
+        six_r_e_2_in_axes5_z*six_r_f_4_in_axes4_y + six_r_f_4_in_axes4_x*six_r_h_4_t
+        )
         # (six_r-acc_5) acceleration of the reference point of link 5, less gravity
-        six_r_acc_5_in_axes5_x = (
-        six_r_S_ddot_in_axes5_x - axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y
-            - axis_x_six_r_axes5_z*gravity_z
+        six_r_g_in_axes5_x = (
+        axis_x_six_r_axes5_x*gravity_x + axis_x_six_r_axes5_y*gravity_y +
+            axis_x_six_r_axes5_z*gravity_z
         )
-        six_r_acc_5_in_axes5_y = (
-        six_r_S_ddot_in_axes5_y - axis_y_six_r_axes5_x*gravity_x - axis_y_six_r_axes5_y*gravity_y
-            - axis_y_six_r_axes5_z*gravity_z
+        six_r_g_in_axes5_y = (
+        axis_y_six_r_axes5_x*gravity_x + axis_y_six_r_axes5_y*gravity_y +
+            axis_y_six_r_axes5_z*gravity_z
         )
-        six_r_acc_5_in_axes5_z = (
-        six_r_S_ddot_in_axes5_z - axis_z_six_r_axes5_x*gravity_x - axis_z_six_r_axes5_y*gravity_y
-            - axis_z_six_r_axes5_z*gravity_z
+        six_r_g_in_axes5_z = (
+        axis_z_six_r_axes5_x*gravity_x + axis_z_six_r_axes5_y*gravity_y +
+            axis_z_six_r_axes5_z*gravity_z
         )
+        six_r_acc_5_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_g_in_axes5_x
+        six_r_acc_5_in_axes5_y = six_r_S_ddot_in_axes5_y - six_r_g_in_axes5_y
+        six_r_acc_5_in_axes5_z = six_r_S_ddot_in_axes5_z - six_r_g_in_axes5_z
         # (six_r-mu_5) inertia moment of the links that turn with link 5, about their reference points
         six_r_mu_5_in_axes5_x = (
         six_r_B_5_in_axes5_yx*six_r_J_5_in_spec5_xz +
-            six_r_B_5_in_axes5_zy*six_r_Sigma_5_in_axes5_yy + six_r_J_5_in_spec5_yz*(six_r_W_5_t -
-            six_r_W_5_t_2) + six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_y -
+            six_r_B_5_in_axes5_zy*six_r_Sigma_5_in_axes5_yy + six_r_J_5_in_spec5_yz*(six_r_W_5_t_4
+            - six_r_W_5_t_5) + six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_y -
             six_r_B_5_in_axes5_yz*six_r_Sigma_5_in_axes5_zz -
             six_r_B_5_in_axes5_zx*six_r_J_5_in_spec5_xy -
             six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_z
@@ -9039,13 +9177,13 @@ def _run_required(m, X, V, A, q):
             six_r_acc_5_in_axes5_x*six_r_h_5_in_spec5_z -
             six_r_B_5_in_axes5_xy*six_r_J_5_in_spec5_yz -
             six_r_B_5_in_axes5_zx*six_r_Sigma_5_in_axes5_xx -
-            six_r_J_5_in_spec5_xz*(six_r_bias_t_11 - six_r_W_5_t_2) -
+            six_r_J_5_in_spec5_xz*(six_r_bias_t_20 - six_r_W_5_t_5) -
             six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_x
         )
         six_r_mu_5_in_axes5_z = (
         six_r_B_5_in_axes5_xz*six_r_J_5_in_spec5_yz +
             six_r_B_5_in_axes5_yx*six_r_Sigma_5_in_axes5_xx +
-            six_r_J_5_in_spec5_xy*(six_r_bias_t_11 - six_r_W_5_t) +
+            six_r_J_5_in_spec5_xy*(six_r_bias_t_20 - six_r_W_5_t_4) +
             six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_x -
             six_r_B_5_in_axes5_xy*six_r_Sigma_5_in_axes5_yy -
             six_r_B_5_in_axes5_yz*six_r_J_5_in_spec5_xz -
@@ -9055,7 +9193,7 @@ def _run_required(m, X, V, A, q):
         six_r_mu_4_in_axes4_x = (
         six_r_B_4_in_axes4_yx*six_r_J_4_in_spec4_xy +
             six_r_B_4_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
-            six_r_J_4_in_spec4_xz*(six_r_bias_t_10 - six_r_f_4_t_2) +
+            six_r_J_4_in_spec4_xz*(six_r_bias_t_19 - six_r_f_4_t_2) +
             six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_z -
             six_r_B_4_in_axes4_yz*six_r_Sigma_4_in_axes4_zz -
             six_r_B_4_in_axes4_zx*six_r_J_4_in_spec4_yz -
@@ -9072,31 +9210,33 @@ def _run_required(m, X, V, A, q):
         six_r_mu_4_in_axes4_z = (
         six_r_B_4_in_axes4_xz*six_r_J_4_in_spec4_xz +
             six_r_B_4_in_axes4_yx*six_r_Sigma_4_in_axes4_xx + six_r_J_4_in_spec4_yz*(six_r_f_4_t -
-            six_r_bias_t_10) + six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_y -
+            six_r_bias_t_19) + six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_y -
             six_r_B_4_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
             six_r_B_4_in_axes4_yz*six_r_J_4_in_spec4_xy -
             six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_z
         )
         # (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
         six_r_N_4_in_axes4_x = (
-        six_r_mu_4_in_axes4_x + six_r_c_5*six_r_mu_5_in_axes5_y + six_r_mu_5_in_axes5_x*six_r_s_5
+        six_r_mu_4_in_axes4_x + six_r_J_5_t*six_r_mu_5_in_axes5_x +
+            six_r_e_4_in_axes5_x*six_r_mu_5_in_axes5_y
         )
         six_r_N_4_in_axes4_y = six_r_mu_4_in_axes4_y + six_r_mu_5_in_axes5_z
         six_r_N_4_in_axes4_z = (
-        six_r_mu_4_in_axes4_z + six_r_c_5*six_r_mu_5_in_axes5_x - six_r_mu_5_in_axes5_y*six_r_s_5
+        six_r_mu_4_in_axes4_z + six_r_e_4_in_axes5_x*six_r_mu_5_in_axes5_x -
+            six_r_J_5_t*six_r_mu_5_in_axes5_y
         )
         # (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points
         six_r_mu_3_in_axes3_x = (
         six_r_B_3_in_axes3_zx*six_r_J_3_in_spec3_xy +
             six_r_B_3_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_xz*(six_r_f_3_t -
-            six_r_W_3_t_2) + six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_x -
+            six_r_W_3_t_5) + six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_x -
             six_r_B_3_in_axes3_yx*six_r_J_3_in_spec3_yz -
             six_r_B_3_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
             six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_z
         )
         six_r_mu_3_in_axes3_y = (
-        six_r_B_3_in_axes3_xz*six_r_Sigma_3_in_axes3_zz + six_r_J_3_in_spec3_yz*(six_r_W_3_t -
-            six_r_W_3_t_2) + six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_z +
+        six_r_B_3_in_axes3_xz*six_r_Sigma_3_in_axes3_zz + six_r_J_3_in_spec3_yz*(six_r_W_3_t_4 -
+            six_r_W_3_t_5) + six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_z +
             six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_y -
             six_r_B_3_in_axes3_xy*six_r_J_3_in_spec3_xz -
             six_r_B_3_in_axes3_zx*six_r_Sigma_3_in_axes3_xx -
@@ -9106,47 +9246,53 @@ def _run_required(m, X, V, A, q):
         six_r_B_3_in_axes3_xz*six_r_J_3_in_spec3_xz +
             six_r_B_3_in_axes3_yx*six_r_Sigma_3_in_axes3_xx +
             six_r_B_3_in_axes3_yz*six_r_J_3_in_spec3_yz -
-            six_r_B_3_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t -
-            six_r_f_3_t) - six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_x -
+            six_r_B_3_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t_4
+            - six_r_f_3_t) - six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_x -
             six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_y
         )
         # (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
         six_r_N_3_in_axes3_x = (
-        six_r_mu_3_in_axes3_x + six_r_N_4_in_axes4_y*six_r_s_4 +
-            six_r_f_4_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_in_axes4_x*six_r_c_4
+        six_r_mu_3_in_axes3_x + six_r_N_4_in_axes4_y*six_r_h_4_t +
+            six_r_f_4_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_in_axes4_x*six_r_e_2_in_axes5_z
         )
         six_r_N_3_in_axes3_y = six_r_N_4_in_axes4_z + six_r_mu_3_in_axes3_y
         six_r_N_3_in_axes3_z = (
-        six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_s_4 + six_r_N_4_in_axes4_y*six_r_c_4 -
-            six_r_f_4_in_axes3_x*six_r_joint4_offset_x
+        six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_h_4_t +
+            six_r_N_4_in_axes4_y*six_r_e_2_in_axes5_z - six_r_f_4_in_axes3_x*six_r_joint4_offset_x
         )
         # (six_r-T_3) inertia force of the links from 3 outwards, the last link left out
         six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes3_x
         six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes4_z
         six_r_T_3_in_axes3_z = six_r_f_3_in_axes3_z + six_r_f_4_in_axes3_z
         # (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        six_r_mu_2_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x
+        six_r_mu_2_t = (
+        six_r_g_in_axes1_y*six_r_h_2_in_spec2_y - six_r_g_in_axes2_y*six_r_h_2_in_spec2_z
+        )
+        six_r_mu_2_t_2 = (
+        six_r_g_in_axes2_x*six_r_h_2_in_spec2_z - six_r_g_in_axes1_y*six_r_h_2_in_spec2_x
+        )
+        six_r_mu_2_t_3 = (
+        six_r_g_in_axes2_y*six_r_h_2_in_spec2_x - six_r_g_in_axes2_x*six_r_h_2_in_spec2_y
+        )
+        six_r_mu_2_t_4 = six_r_omega_1_in_axes2_x_2*six_r_omega_1_in_axes2_x_2
         six_r_mu_2_in_axes2_x = (
         six_r_B_2_in_axes2_yx*six_r_J_2_in_spec2_xz +
             six_r_B_2_in_axes2_zy*six_r_Sigma_2_in_axes2_yy + six_r_J_2_in_spec2_yz*(six_r_a_o_3_t
-            - six_r_a_o_3_t_2) + six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
-            six_r_B_2_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_t - six_r_g_in_axes1_y*six_r_h_2_in_spec2_y
+            - six_r_a_o_3_t_2) - six_r_mu_2_t - six_r_B_2_in_axes2_zx*six_r_J_2_in_spec2_xy -
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_t
         )
         six_r_mu_2_in_axes2_y = (
         six_r_B_2_in_axes2_zy*six_r_J_2_in_spec2_xy +
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_in_axes2_y +
-            six_r_g_in_axes1_y*six_r_h_2_in_spec2_x - six_r_B_2_in_axes2_xy*six_r_J_2_in_spec2_yz
-            - six_r_B_2_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
-            six_r_J_2_in_spec2_xz*(six_r_mu_2_t - six_r_a_o_3_t_2) -
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_z
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_in_axes2_y - six_r_mu_2_t_2 -
+            six_r_B_2_in_axes2_xy*six_r_J_2_in_spec2_yz -
+            six_r_B_2_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
+            six_r_J_2_in_spec2_xz*(six_r_mu_2_t_4 - six_r_a_o_3_t_2)
         )
         six_r_mu_2_in_axes2_z = (
-        six_r_B_2_in_axes2_yx*six_r_Sigma_2_in_axes2_xx + six_r_J_2_in_spec2_xy*(six_r_mu_2_t -
-            six_r_a_o_3_t) + six_r_J_2_in_spec2_yz*six_r_alpha_1_in_axes2_y +
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
+        six_r_B_2_in_axes2_yx*six_r_Sigma_2_in_axes2_xx + six_r_J_2_in_spec2_xy*(six_r_mu_2_t_4 -
+            six_r_a_o_3_t) + six_r_J_2_in_spec2_yz*six_r_alpha_1_in_axes2_y - six_r_mu_2_t_3 -
             six_r_B_2_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
-            six_r_J_2_in_spec2_xz*six_r_alpha_1_t - six_r_g_in_axes2_y*six_r_h_2_in_spec2_x
+            six_r_J_2_in_spec2_xz*six_r_alpha_1_t
         )
         # (six_r-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         six_r_N_2_in_axes2_x = (
@@ -9162,63 +9308,63 @@ def _run_required(m, X, V, A, q):
             six_r_T_3_in_axes3_y*six_r_s_3)
         )
         # (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        six_r_mu_1_in_axes1_z = (
-        six_r_g_in_axes1_x*six_r_h_1_in_spec1_z - six_r_J_1_in_spec1_xx*six_r_qdd_1_t_5 -
-            six_r_g_in_axes1_y*six_r_h_1_in_spec1_y
+        six_r_mu_1_t = (
+        six_r_g_in_axes1_y*six_r_h_1_in_spec1_y - six_r_g_in_axes1_x*six_r_h_1_in_spec1_z
         )
+        six_r_mu_1_in_axes1_z = -six_r_mu_1_t - six_r_J_1_in_spec1_xx*six_r_qdd_1_t_5
         # (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         six_r_N_1_in_axes1_z = (
         six_r_mu_1_in_axes1_z + six_r_N_2_in_axes2_x*six_r_c_2 - six_r_N_2_in_axes2_y*six_r_s_2
         )
         # (six_r-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        six_r_G_m1_t = inv_six_r_w_1_t_12*six_r_mu_5_in_axes5_z
-        six_r_G_m1_t_2 = inv_six_r_w_1_t_28*(six_r_G_m1_t*six_r_w_1_t_15 - six_r_N_4_in_axes4_z)
+        six_r_G_m1_t = inv_six_r_w_1_t_8*six_r_mu_5_in_axes5_z
+        six_r_G_m1_t_2 = inv_six_r_w_1_t_24*(six_r_G_m1_t*six_r_w_1_t_11 - six_r_N_4_in_axes4_z)
         six_r_G_m1_t_3 = (
-        inv_six_r_w_1_t_49*(six_r_G_m1_t*six_r_w_1_t_18 + six_r_G_m1_t_2*six_r_w_1_t_33 -
+        inv_six_r_w_1_t_45*(six_r_G_m1_t*six_r_w_1_t_14 + six_r_G_m1_t_2*six_r_w_1_t_29 -
             six_r_N_1_in_axes1_z)
         )
         six_r_G_m1_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_G_m1_t*six_r_w_1_t_22 + six_r_G_m1_t_2*six_r_w_1_t_39 -
-            six_r_N_2_in_axes2_z - six_r_G_m1_t_3*six_r_w_1_t_55)
+        inv_six_r_w_1_t_63*(six_r_G_m1_t*six_r_w_1_t_18 + six_r_G_m1_t_2*six_r_w_1_t_35 -
+            six_r_N_2_in_axes2_z - six_r_G_m1_t_3*six_r_w_1_t_51)
         )
         six_r_G_m1_t_5 = (
-        inv_six_r_w_1_t_79*(six_r_N_3_in_axes3_z + six_r_G_m1_t*six_r_w_1_t_25 +
-            six_r_G_m1_t_3*six_r_w_1_t_61 + six_r_G_m1_t_4*six_r_w_1_t_73 -
-            six_r_G_m1_t_2*six_r_w_1_t_44)
+        inv_six_r_w_1_t_75*(six_r_N_3_in_axes3_z + six_r_G_m1_t*six_r_w_1_t_21 +
+            six_r_G_m1_t_3*six_r_w_1_t_57 + six_r_G_m1_t_4*six_r_w_1_t_69 -
+            six_r_G_m1_t_2*six_r_w_1_t_40)
         )
         six_r_G_m1_t_6 = (
-        six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_31 + six_r_G_m1_t_3*six_r_w_1_t_53 +
-            six_r_G_m1_t_4*six_r_w_1_t_71 - six_r_G_m1_t_5*six_r_m1_w_2_t)
+        six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_27 + six_r_G_m1_t_3*six_r_w_1_t_49 +
+            six_r_G_m1_t_4*six_r_w_1_t_67 - six_r_G_m1_t_5*six_r_m1_w_1_t)
         )
         # (six_r-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m2_t = (
-        six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_32 + six_r_G_m1_t_3*six_r_w_1_t_54 +
-            six_r_G_m1_t_4*six_r_w_1_t_72 - six_r_G_m1_t*six_r_w_1_t_14 -
-            six_r_G_m1_t_5*six_r_m2_w_2_t)
+        six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_28 + six_r_G_m1_t_3*six_r_w_1_t_50 +
+            six_r_G_m1_t_4*six_r_w_1_t_68 - six_r_G_m1_t*six_r_w_1_t_10 -
+            six_r_G_m1_t_5*six_r_m2_w_1_t)
         )
         # (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        six_r_G_m_in_axes5_x = six_r_G_m1_t_6*six_r_n_m2_in_axes5_z
+        six_r_G_m_in_axes5_x = six_r_G_m1_t_6*six_r_end_p1_in_axes5_y
         six_r_G_m_in_axes5_y = (
         six_r_G_m2_t*six_r_end_p1_in_axes5_z - six_r_G_m1_t_6*six_r_n_m1_in_axes5_y
         )
         # (six_r-c) leg force on the platform without actuation and without the mass at the connection point
         six_r_c_in_axes5_x = (
-        six_r_G_m1_t_3*six_r_w_1_t_50 + six_r_G_m1_t_4*six_r_w_1_t_68 +
-            six_r_W_5_t_3*six_r_h_5_in_spec5_x - six_r_B_5_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_t_5*six_r_w_2_t
+        six_r_G_m1_t_3*six_r_w_1_t_46 + six_r_G_m1_t_4*six_r_w_1_t_64 +
+            six_r_W_5_t_6*six_r_h_5_in_spec5_x - six_r_B_5_in_axes5_xy*six_r_h_5_in_spec5_y -
+            six_r_B_5_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_t_5*six_r_w_1_t_76
         )
         six_r_c_in_axes5_y = (
-        six_r_G_m1_t_5*six_r_w_2_t_2 + six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_11) -
+        six_r_G_m1_t_5*six_r_w_1_t_77 + six_r_h_5_in_spec5_y*(six_r_W_5_t_5 + six_r_bias_t_20) -
             six_r_B_5_in_axes5_yx*six_r_h_5_in_spec5_x -
-            six_r_B_5_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_t*six_r_w_1_t_13 -
-            six_r_G_m1_t_2*six_r_w_1_t_29 - six_r_G_m1_t_3*six_r_w_1_t_51 -
-            six_r_G_m1_t_4*six_r_w_1_t_69
+            six_r_B_5_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_t*six_r_w_1_t_9 -
+            six_r_G_m1_t_2*six_r_w_1_t_25 - six_r_G_m1_t_3*six_r_w_1_t_47 -
+            six_r_G_m1_t_4*six_r_w_1_t_65
         )
         six_r_c_in_axes5_z = (
-        six_r_G_m1_t_2*six_r_w_1_t_30 + six_r_G_m1_t_3*six_r_w_1_t_52 +
-            six_r_G_m1_t_4*six_r_w_1_t_70 + six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_11) -
-            six_r_B_5_in_axes5_zx*six_r_h_5_in_spec5_x -
-            six_r_B_5_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_t_5*six_r_w_2_t_3
+        six_r_G_m1_t_2*six_r_w_1_t_26 + six_r_G_m1_t_3*six_r_w_1_t_48 +
+            six_r_G_m1_t_4*six_r_w_1_t_66 + six_r_h_5_in_spec5_z*(six_r_W_5_t_4 + six_r_bias_t_20)
+            - six_r_B_5_in_axes5_zx*six_r_h_5_in_spec5_x -
+            six_r_B_5_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_t_5*six_r_w_1_t_78
         )
         six_r_c_x = (
         axis_x_six_r_axes5_x*six_r_c_in_axes5_x + axis_y_six_r_axes5_x*six_r_c_in_axes5_y +
@@ -9233,37 +9379,34 @@ def _run_required(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_c_in_axes5_z
         )
         # (six_r-c_m) moment of the leg on the platform without actuation
-        six_r_c_m_in_axes5_z = six_r_G_m2_t*six_r_n_m2_in_axes5_z
+        six_r_c_m_in_axes5_z = six_r_G_m2_t*six_r_end_p1_in_axes5_y
+        six_r_c_m_x = (
+        axis_z_six_r_axes5_x*six_r_c_m_in_axes5_z - axis_x_six_r_axes5_x*six_r_G_m_in_axes5_x -
+            axis_y_six_r_axes5_x*six_r_G_m_in_axes5_y
+        )
+        six_r_c_m_y = (
+        axis_z_six_r_axes5_y*six_r_c_m_in_axes5_z - axis_x_six_r_axes5_y*six_r_G_m_in_axes5_x -
+            axis_y_six_r_axes5_y*six_r_G_m_in_axes5_y
+        )
+        six_r_c_m_z = (
+        axis_z_six_r_axes5_z*six_r_c_m_in_axes5_z - axis_x_six_r_axes5_z*six_r_G_m_in_axes5_x -
+            axis_y_six_r_axes5_z*six_r_G_m_in_axes5_y
+        )
         # (R_a) moment that actuators and external wrench must give
-        six_r_R_a_t = (
-        axis_x_six_r_axes5_x*six_r_G_m_in_axes5_x + axis_y_six_r_axes5_x*six_r_G_m_in_axes5_y +
-            six_r_c_y*six_r_q_z - axis_z_six_r_axes5_x*six_r_c_m_in_axes5_z - six_r_c_z*six_r_q_y
-        )
-        six_r_R_a_t_2 = (
-        axis_x_six_r_axes5_y*six_r_G_m_in_axes5_x + axis_y_six_r_axes5_y*six_r_G_m_in_axes5_y +
-            six_r_c_z*six_r_q_x - axis_z_six_r_axes5_y*six_r_c_m_in_axes5_z - six_r_c_x*six_r_q_z
-        )
-        six_r_R_a_t_3 = (
-        axis_x_six_r_axes5_z*six_r_G_m_in_axes5_x + axis_y_six_r_axes5_z*six_r_G_m_in_axes5_y +
-            six_r_c_x*six_r_q_y - axis_z_six_r_axes5_z*six_r_c_m_in_axes5_z - six_r_c_y*six_r_q_x
-        )
+        six_r_R_a_t = six_r_c_y*six_r_q_z - six_r_c_m_x - six_r_c_z*six_r_q_y
+        six_r_R_a_t_2 = six_r_c_z*six_r_q_x - six_r_c_m_y - six_r_c_x*six_r_q_z
+        six_r_R_a_t_3 = six_r_c_x*six_r_q_y - six_r_c_m_z - six_r_c_y*six_r_q_x
         # (six_r-H_a_2) moment of the column's unit force about the platform origin
-        six_r_H_a_2_x = (
-        axis_y_six_r_axes5_x*six_r_o_2_in_axes5_y + axis_z_six_r_axes5_x*six_r_o_2_in_axes5_z +
-            six_r_q_y*six_r_w_2_z - axis_x_six_r_axes5_x*six_r_o_2_t - six_r_q_z*six_r_w_2_y
-        )
-        six_r_H_a_2_y = (
-        axis_y_six_r_axes5_y*six_r_o_2_in_axes5_y + axis_z_six_r_axes5_y*six_r_o_2_in_axes5_z +
-            six_r_q_z*six_r_w_2_x - axis_x_six_r_axes5_y*six_r_o_2_t - six_r_q_x*six_r_w_2_z
-        )
-        six_r_H_a_2_z = (
-        axis_y_six_r_axes5_z*six_r_o_2_in_axes5_y + axis_z_six_r_axes5_z*six_r_o_2_in_axes5_z +
-            six_r_q_x*six_r_w_2_y - axis_x_six_r_axes5_z*six_r_o_2_t - six_r_q_y*six_r_w_2_x
-        )
+        six_r_H_a_2_t = six_r_q_y*six_r_w_2_z - six_r_q_z*six_r_w_2_y
+        six_r_H_a_2_t_2 = six_r_q_z*six_r_w_2_x - six_r_q_x*six_r_w_2_z
+        six_r_H_a_2_t_3 = six_r_q_x*six_r_w_2_y - six_r_q_y*six_r_w_2_x
+        six_r_H_a_2_x_2 = six_r_H_a_2_t + six_r_o_2_x_2
+        six_r_H_a_2_y_2 = six_r_H_a_2_t_2 + six_r_o_2_y_2
+        six_r_H_a_2_z_2 = six_r_H_a_2_t_3 + six_r_o_2_z_2
         ok = (
-        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
-            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
+        ok & (abs(six_r_w_1_t_8) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_24) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_45) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_63) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_75) > _TOLERANCE * six_r_size)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += six_r_c_x
@@ -9278,9 +9421,9 @@ def _run_required(m, X, V, A, q):
         out_H[_H_six_r[1][leg]] = six_r_w_2_y
         out_H[_H_six_r[2][leg]] = six_r_w_2_z
         # (six_r-H_a_2) moment of the column's unit force about the platform origin
-        out_H[_H_six_r[3][leg]] = six_r_H_a_2_x
-        out_H[_H_six_r[4][leg]] = six_r_H_a_2_y
-        out_H[_H_six_r[5][leg]] = six_r_H_a_2_z
+        out_H[_H_six_r[3][leg]] = six_r_H_a_2_x_2
+        out_H[_H_six_r[4][leg]] = six_r_H_a_2_y_2
+        out_H[_H_six_r[5][leg]] = six_r_H_a_2_z_2
     # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - R_t_t
     R_t_y = f_p_y - R_t_t_2
@@ -9385,6 +9528,22 @@ def _run_joint_rates(m, X, V, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-h_4) first moment of link 4 about the origin of link 4
+        six_r_e_2_in_axes5_z = cos(six_r_q_4)
+        six_r_h_4_t = sin(six_r_q_4)
+        # (six_r-J_5) inertia tensor of link 5 about the connection point
+        six_r_e_4_in_axes5_x = cos(six_r_q_5)
+        six_r_J_5_t = sin(six_r_q_5)
+        # (six_r-S) from the base point to the connection point
+        six_r_q_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
         six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
@@ -9397,22 +9556,14 @@ def _run_joint_rates(m, X, V, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
-        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = cos(six_r_q_4)
-        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = sin(six_r_q_4)
-        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = cos(six_r_q_5)
-        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
-        six_r_S_dot_t = six_r_c_3*six_r_s_4
-        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
+        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
+        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
+        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -9425,9 +9576,9 @@ def _run_joint_rates(m, X, V, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
-        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
+        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
+        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -9453,18 +9604,12 @@ def _run_joint_rates(m, X, V, q):
         axis_x_six_r_axes5_z = (
         axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
         )
-        six_r_q_x = (
-        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
-        )
-        six_r_q_y = (
-        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
-        )
-        six_r_q_z = (
-        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
-        )
-        six_r_S_dot_x = t_dot_x + omega_y*six_r_q_z - omega_z*six_r_q_y
-        six_r_S_dot_y = t_dot_y + omega_z*six_r_q_x - omega_x*six_r_q_z
-        six_r_S_dot_z = t_dot_z + omega_x*six_r_q_y - omega_y*six_r_q_x
+        six_r_S_dot_t_14 = omega_y*six_r_q_z - omega_z*six_r_q_y
+        six_r_S_dot_t_15 = omega_z*six_r_q_x - omega_x*six_r_q_z
+        six_r_S_dot_t_16 = omega_x*six_r_q_y - omega_y*six_r_q_x
+        six_r_S_dot_x = six_r_S_dot_t_14 + t_dot_x
+        six_r_S_dot_y = six_r_S_dot_t_15 + t_dot_y
+        six_r_S_dot_z = six_r_S_dot_t_16 + t_dot_z
         six_r_S_dot_in_axes5_x = (
         axis_x_six_r_axes5_x*six_r_S_dot_x + axis_x_six_r_axes5_y*six_r_S_dot_y +
             axis_x_six_r_axes5_z*six_r_S_dot_z
@@ -9478,19 +9623,25 @@ def _run_joint_rates(m, X, V, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
+        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes4_z = (
+        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
+        )
+        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
+        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
+        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_x = (
+        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
+        )
+        six_r_r_3_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
+        )
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -9498,10 +9649,10 @@ def _run_joint_rates(m, X, V, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
+        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
+        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -9510,17 +9661,17 @@ def _run_joint_rates(m, X, V, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
+        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
+        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
+        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -9531,30 +9682,31 @@ def _run_joint_rates(m, X, V, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
+        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
-            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
+        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
+            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
+            six_r_J_5_t*six_r_r_4_in_axes4_z)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -9587,206 +9739,233 @@ def _run_joint_rates(m, X, V, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
+        six_r_end_p1_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
+        )
+        six_r_n_m1_t_11 = (
+        six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_t_12 = (
+        six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_in_axes4_z = (
+        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
+        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_n_m2_t = (
+        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_t_2 = (
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
-        six_r_w_1_t = (
-        six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        six_r_w_1_t = six_r_n_m1_t_11*six_r_size
+        six_r_w_1_t_2 = six_r_n_m2_t*six_r_size
+        six_r_w_1_t_3 = six_r_n_m1_t_12*six_r_size
+        six_r_w_1_t_4 = six_r_n_m2_t_2*six_r_size
+        six_r_w_1_t_5 = six_r_n_m1_in_axes4_z*six_r_size
+        six_r_w_1_t_6 = six_r_n_m2_in_axes4_z*six_r_size
+        six_r_w_1_t_7 = six_r_end_p1_in_axes5_y*six_r_size
+        six_r_w_1_t_8 = sqrt(six_r_size_t + six_r_w_1_t_7*six_r_w_1_t_7)
+        inv_six_r_w_1_t_8 = 1.0/six_r_w_1_t_8
+        six_r_w_1_t_9 = inv_six_r_w_1_t_8*six_r_platform_joint_offset_x
+        six_r_w_1_t_10 = inv_six_r_w_1_t_8*six_r_w_1_t_7
+        six_r_w_1_t_11 = six_r_w_1_t_10*six_r_w_1_t_6
+        six_r_w_1_t_12 = six_r_w_1_t_11*six_r_w_1_t_9
+        six_r_w_1_t_13 = six_r_w_1_t_6 - six_r_w_1_t_10*six_r_w_1_t_11
+        six_r_w_1_t_14 = six_r_v_1_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_10*six_r_w_1_t_2
+        six_r_w_1_t_15 = six_r_v_1_in_axes5_y - six_r_w_1_t_14*six_r_w_1_t_9
+        six_r_w_1_t_16 = six_r_w_1_t_2 + six_r_w_1_t_10*six_r_w_1_t_14
+        six_r_w_1_t_17 = six_r_w_1_t_10*six_r_w_1_t_4
+        six_r_w_1_t_18 = six_r_v_2_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_v_2_in_axes5_y - six_r_w_1_t_18*six_r_w_1_t_9
+        six_r_w_1_t_20 = six_r_w_1_t_4 + six_r_w_1_t_10*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_w_1_t_17 - six_r_v_3_in_axes5_y*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_3_in_axes5_y + six_r_w_1_t_21*six_r_w_1_t_9
+        six_r_w_1_t_23 = six_r_w_1_t_4 - six_r_w_1_t_10*six_r_w_1_t_21
+        six_r_w_1_t_24 = (
+        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_13*six_r_w_1_t_13 + six_r_w_1_t_5*six_r_w_1_t_5)
         )
-        six_r_w_1_t_2 = (
-        six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        inv_six_r_w_1_t_24 = 1.0/six_r_w_1_t_24
+        six_r_w_1_t_25 = inv_six_r_w_1_t_24*six_r_w_1_t_12
+        six_r_w_1_t_26 = inv_six_r_w_1_t_24*six_r_v_4_in_axes5_z
+        six_r_w_1_t_27 = inv_six_r_w_1_t_24*six_r_w_1_t_5
+        six_r_w_1_t_28 = inv_six_r_w_1_t_24*six_r_w_1_t_13
+        six_r_w_1_t_29 = (
+        six_r_w_1_t*six_r_w_1_t_27 + six_r_w_1_t_15*six_r_w_1_t_25 + six_r_w_1_t_16*six_r_w_1_t_28
+            - six_r_v_1_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_3 = (
-        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_30 = six_r_w_1_t_25*six_r_w_1_t_29 - six_r_w_1_t_15
+        six_r_w_1_t_31 = six_r_v_1_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_29
+        six_r_w_1_t_32 = six_r_w_1_t_27*six_r_w_1_t_29 - six_r_w_1_t
+        six_r_w_1_t_33 = six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_16
+        six_r_w_1_t_34 = six_r_w_1_t_27*six_r_w_1_t_3
+        six_r_w_1_t_35 = (
+        six_r_w_1_t_34 + six_r_w_1_t_19*six_r_w_1_t_25 + six_r_w_1_t_20*six_r_w_1_t_28 -
+            six_r_v_2_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_36 = six_r_w_1_t_25*six_r_w_1_t_35 - six_r_w_1_t_19
+        six_r_w_1_t_37 = six_r_v_2_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_35
+        six_r_w_1_t_38 = six_r_w_1_t_27*six_r_w_1_t_35 - six_r_w_1_t_3
+        six_r_w_1_t_39 = six_r_w_1_t_28*six_r_w_1_t_35 - six_r_w_1_t_20
+        six_r_w_1_t_40 = (
+        six_r_w_1_t_34 + six_r_w_1_t_22*six_r_w_1_t_25 + six_r_w_1_t_23*six_r_w_1_t_28 -
+            six_r_v_3_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_5 = six_r_size*six_r_w_1_t
-        six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
-        six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
-        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
-        six_r_w_1_t_9 = (
-        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
+        six_r_w_1_t_41 = six_r_w_1_t_25*six_r_w_1_t_40 - six_r_w_1_t_22
+        six_r_w_1_t_42 = six_r_v_3_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_40
+        six_r_w_1_t_43 = six_r_w_1_t_27*six_r_w_1_t_40 - six_r_w_1_t_3
+        six_r_w_1_t_44 = six_r_w_1_t_28*six_r_w_1_t_40 - six_r_w_1_t_23
+        six_r_w_1_t_45 = (
+        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_30*six_r_w_1_t_30 +
+            six_r_w_1_t_31*six_r_w_1_t_31 + six_r_w_1_t_32*six_r_w_1_t_32 +
+            six_r_w_1_t_33*six_r_w_1_t_33)
         )
-        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
-        six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
-        six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
-        inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
-        six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x
-        six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11
-        six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14
-        six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15
-        six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15
-        six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_14*six_r_w_1_t_6
-        six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18
-        six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18
-        six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8
-        six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21
-        six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22
-        six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22
-        six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13
-        six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25
-        six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25
-        six_r_w_1_t_28 = (
-        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_16*six_r_w_1_t_16 +
-            six_r_w_1_t_17*six_r_w_1_t_17 + six_r_w_1_t_9*six_r_w_1_t_9)
+        inv_six_r_w_1_t_45 = 1.0/six_r_w_1_t_45
+        six_r_w_1_t_46 = inv_six_r_w_1_t_45*six_r_v_1_in_axes5_x
+        six_r_w_1_t_47 = inv_six_r_w_1_t_45*six_r_w_1_t_30
+        six_r_w_1_t_48 = inv_six_r_w_1_t_45*six_r_w_1_t_31
+        six_r_w_1_t_49 = inv_six_r_w_1_t_45*six_r_w_1_t_32
+        six_r_w_1_t_50 = inv_six_r_w_1_t_45*six_r_w_1_t_33
+        six_r_w_1_t_51 = (
+        six_r_v_2_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_36*six_r_w_1_t_47 +
+            six_r_w_1_t_37*six_r_w_1_t_48 + six_r_w_1_t_38*six_r_w_1_t_49 +
+            six_r_w_1_t_39*six_r_w_1_t_50
         )
-        inv_six_r_w_1_t_28 = 1.0/six_r_w_1_t_28
-        six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16
-        six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z
-        six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9
-        six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17
-        six_r_w_1_t_33 = (
-        six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32 +
-            six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_52 = six_r_v_2_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_51
+        six_r_w_1_t_53 = six_r_w_1_t_36 - six_r_w_1_t_47*six_r_w_1_t_51
+        six_r_w_1_t_54 = six_r_w_1_t_37 - six_r_w_1_t_48*six_r_w_1_t_51
+        six_r_w_1_t_55 = six_r_w_1_t_38 - six_r_w_1_t_49*six_r_w_1_t_51
+        six_r_w_1_t_56 = six_r_w_1_t_39 - six_r_w_1_t_50*six_r_w_1_t_51
+        six_r_w_1_t_57 = (
+        six_r_v_3_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_41*six_r_w_1_t_47 +
+            six_r_w_1_t_42*six_r_w_1_t_48 + six_r_w_1_t_43*six_r_w_1_t_49 +
+            six_r_w_1_t_44*six_r_w_1_t_50
         )
-        six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19
-        six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33
-        six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5
-        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20
-        six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7
-        six_r_w_1_t_39 = (
-        six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32 -
-            six_r_v_2_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_58 = six_r_v_3_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_57
+        six_r_w_1_t_59 = six_r_w_1_t_41 - six_r_w_1_t_47*six_r_w_1_t_57
+        six_r_w_1_t_60 = six_r_w_1_t_42 - six_r_w_1_t_48*six_r_w_1_t_57
+        six_r_w_1_t_61 = six_r_w_1_t_43 - six_r_w_1_t_49*six_r_w_1_t_57
+        six_r_w_1_t_62 = six_r_w_1_t_44 - six_r_w_1_t_50*six_r_w_1_t_57
+        six_r_w_1_t_63 = (
+        sqrt(six_r_w_1_t_52*six_r_w_1_t_52 + six_r_w_1_t_53*six_r_w_1_t_53 +
+            six_r_w_1_t_54*six_r_w_1_t_54 + six_r_w_1_t_55*six_r_w_1_t_55 +
+            six_r_w_1_t_56*six_r_w_1_t_56)
         )
-        six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23
-        six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39
-        six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7
-        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24
-        six_r_w_1_t_44 = (
-        six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32 -
-            six_r_v_3_in_axes5_z*six_r_w_1_t_30
+        inv_six_r_w_1_t_63 = 1.0/six_r_w_1_t_63
+        six_r_w_1_t_64 = inv_six_r_w_1_t_63*six_r_w_1_t_52
+        six_r_w_1_t_65 = inv_six_r_w_1_t_63*six_r_w_1_t_53
+        six_r_w_1_t_66 = inv_six_r_w_1_t_63*six_r_w_1_t_54
+        six_r_w_1_t_67 = inv_six_r_w_1_t_63*six_r_w_1_t_55
+        six_r_w_1_t_68 = inv_six_r_w_1_t_63*six_r_w_1_t_56
+        six_r_w_1_t_69 = (
+        six_r_w_1_t_58*six_r_w_1_t_64 + six_r_w_1_t_59*six_r_w_1_t_65 +
+            six_r_w_1_t_60*six_r_w_1_t_66 + six_r_w_1_t_61*six_r_w_1_t_67 +
+            six_r_w_1_t_62*six_r_w_1_t_68
         )
-        six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26
-        six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44
-        six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7
-        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27
-        six_r_w_1_t_49 = (
-        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_34*six_r_w_1_t_34 +
-            six_r_w_1_t_35*six_r_w_1_t_35 + six_r_w_1_t_36*six_r_w_1_t_36 +
-            six_r_w_1_t_37*six_r_w_1_t_37)
+        six_r_w_1_t_70 = six_r_w_1_t_58 - six_r_w_1_t_64*six_r_w_1_t_69
+        six_r_w_1_t_71 = six_r_w_1_t_59 - six_r_w_1_t_65*six_r_w_1_t_69
+        six_r_w_1_t_72 = six_r_w_1_t_60 - six_r_w_1_t_66*six_r_w_1_t_69
+        six_r_w_1_t_73 = six_r_w_1_t_61 - six_r_w_1_t_67*six_r_w_1_t_69
+        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_69
+        six_r_w_1_t_75 = (
+        sqrt(six_r_w_1_t_70*six_r_w_1_t_70 + six_r_w_1_t_71*six_r_w_1_t_71 +
+            six_r_w_1_t_72*six_r_w_1_t_72 + six_r_w_1_t_73*six_r_w_1_t_73 +
+            six_r_w_1_t_74*six_r_w_1_t_74)
         )
-        inv_six_r_w_1_t_49 = 1.0/six_r_w_1_t_49
-        six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x
-        six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34
-        six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35
-        six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36
-        six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37
-        six_r_w_1_t_55 = (
-        six_r_v_2_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_40*six_r_w_1_t_51 +
-            six_r_w_1_t_41*six_r_w_1_t_52 + six_r_w_1_t_42*six_r_w_1_t_53 +
-            six_r_w_1_t_43*six_r_w_1_t_54
+        inv_six_r_w_1_t_75 = 1.0/six_r_w_1_t_75
+        six_r_w_1_t_76 = inv_six_r_w_1_t_75*six_r_w_1_t_70
+        six_r_w_1_t_77 = inv_six_r_w_1_t_75*six_r_w_1_t_71
+        six_r_w_1_t_78 = inv_six_r_w_1_t_75*six_r_w_1_t_72
+        # (six_r-m1_w_1) moment part 1 of reciprocal wrench 1
+        six_r_m1_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_73
+        # (six_r-m2_w_1) moment part 2 of reciprocal wrench 1
+        six_r_m2_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_74
+        # (six_r-eta_1) rate at which the joints turn along moment direction 1
+        six_r_omega_in_axes5_x = (
+        axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z
         )
-        six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55
-        six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55
-        six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55
-        six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55
-        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55
-        six_r_w_1_t_61 = (
-        six_r_v_3_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_45*six_r_w_1_t_51 +
-            six_r_w_1_t_46*six_r_w_1_t_52 + six_r_w_1_t_47*six_r_w_1_t_53 +
-            six_r_w_1_t_48*six_r_w_1_t_54
-        )
-        six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61
-        six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61
-        six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61
-        six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61
-        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61
-        six_r_w_1_t_67 = (
-        sqrt(six_r_w_1_t_56*six_r_w_1_t_56 + six_r_w_1_t_57*six_r_w_1_t_57 +
-            six_r_w_1_t_58*six_r_w_1_t_58 + six_r_w_1_t_59*six_r_w_1_t_59 +
-            six_r_w_1_t_60*six_r_w_1_t_60)
-        )
-        inv_six_r_w_1_t_67 = 1.0/six_r_w_1_t_67
-        six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56
-        six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57
-        six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58
-        six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59
-        six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60
-        six_r_w_1_t_73 = (
-        six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69 +
-            six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72
-        )
-        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73
-        six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73
-        six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73
-        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73
-        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73
-        six_r_w_1_t_79 = (
-        sqrt(six_r_w_1_t_74*six_r_w_1_t_74 + six_r_w_1_t_75*six_r_w_1_t_75 +
-            six_r_w_1_t_76*six_r_w_1_t_76 + six_r_w_1_t_77*six_r_w_1_t_77 +
-            six_r_w_1_t_78*six_r_w_1_t_78)
-        )
-        # (six_r-qd_1) rate of joint 1
-        inv_six_r_w_1_t_79 = 1.0/six_r_w_1_t_79
         six_r_omega_in_axes5_y = (
         axis_y_six_r_axes5_x*omega_x + axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z
         )
-        six_r_qd_1_t = (
-        six_r_size*(six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*(axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y +
-            axis_x_six_r_axes5_z*omega_z))
+        six_r_eta_1_2 = (
+        six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
+            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_x
         )
-        six_r_qd_1_t_2 = (
-        six_r_size*(six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*(axis_z_six_r_axes5_x*omega_x + axis_z_six_r_axes5_y*omega_y +
-            axis_z_six_r_axes5_z*omega_z))
+        # (six_r-eta_2) rate at which the joints turn along moment direction 2
+        six_r_omega_in_axes5_z = (
+        axis_z_six_r_axes5_x*omega_x + axis_z_six_r_axes5_y*omega_y + axis_z_six_r_axes5_z*omega_z
         )
-        six_r_qd_1_t_3 = (
-        inv_six_r_w_1_t_79*(inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_y*six_r_w_1_t_75 +
-            inv_six_r_w_1_t_79*six_r_qd_1_t_2*six_r_w_1_t_78 -
-            inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_x*six_r_w_1_t_74 -
-            inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_z*six_r_w_1_t_76 -
-            inv_six_r_w_1_t_79*six_r_qd_1_t*six_r_w_1_t_77)
+        six_r_eta_2_t = (
+        six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
+            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_z
         )
-        six_r_qd_1_t_4 = (
-        -inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_y*six_r_w_1_t_69 + six_r_qd_1_t_2*six_r_w_1_t_72
-            - six_r_S_dot_in_axes5_x*six_r_w_1_t_68 - six_r_S_dot_in_axes5_z*six_r_w_1_t_70 -
-            six_r_qd_1_t*six_r_w_1_t_71 - six_r_qd_1_t_3*six_r_w_1_t_73)
+        # (six_r-qd_1) rate of joint 1
+        six_r_qd_1_t_3 = six_r_S_dot_in_axes5_x*six_r_w_1_t_46
+        six_r_qd_1_t_4 = six_r_S_dot_in_axes5_y*six_r_w_1_t_47
+        six_r_qd_1_t_5 = six_r_S_dot_in_axes5_z*six_r_w_1_t_48
+        six_r_qd_1_t_6 = six_r_S_dot_in_axes5_x*six_r_w_1_t_64
+        six_r_qd_1_t_7 = six_r_S_dot_in_axes5_y*six_r_w_1_t_65
+        six_r_qd_1_t_8 = six_r_S_dot_in_axes5_z*six_r_w_1_t_66
+        six_r_qd_1_t_9 = six_r_S_dot_in_axes5_x*six_r_w_1_t_76
+        six_r_qd_1_t_10 = six_r_S_dot_in_axes5_y*six_r_w_1_t_77
+        six_r_qd_1_t_11 = six_r_S_dot_in_axes5_z*six_r_w_1_t_78
+        six_r_qd_1_t_15 = six_r_eta_1_2*six_r_size
+        six_r_qd_1_t_16 = six_r_eta_2_t*six_r_size
+        six_r_qd_1_t_17 = (
+        inv_six_r_w_1_t_75*(six_r_qd_1_t_10 + six_r_m2_w_1_t*six_r_qd_1_t_16 - six_r_qd_1_t_11 -
+            six_r_qd_1_t_9 - six_r_m1_w_1_t*six_r_qd_1_t_15)
+        )
+        six_r_qd_1_t_18 = (
+        -inv_six_r_w_1_t_63*(six_r_qd_1_t_7 + six_r_qd_1_t_16*six_r_w_1_t_68 - six_r_qd_1_t_6 -
+            six_r_qd_1_t_8 - six_r_qd_1_t_15*six_r_w_1_t_67 - six_r_qd_1_t_17*six_r_w_1_t_69)
         )
         six_r_qd_1 = (
-        inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_x*six_r_w_1_t_50 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_52 + six_r_qd_1_t*six_r_w_1_t_53 +
-            six_r_qd_1_t_3*six_r_w_1_t_61 - six_r_S_dot_in_axes5_y*six_r_w_1_t_51 -
-            six_r_qd_1_t_2*six_r_w_1_t_54 - six_r_qd_1_t_4*six_r_w_1_t_55)
+        inv_six_r_w_1_t_45*(six_r_qd_1_t_3 + six_r_qd_1_t_5 + six_r_qd_1_t_15*six_r_w_1_t_49 +
+            six_r_qd_1_t_17*six_r_w_1_t_57 - six_r_qd_1_t_4 - six_r_qd_1_t_16*six_r_w_1_t_50 -
+            six_r_qd_1_t_18*six_r_w_1_t_51)
         )
         # (six_r-qd_4) rate of joint 4
-        six_r_qd_4_t = (
-        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_2*six_r_w_1_t_32
-            + six_r_qd_1_t_3*six_r_w_1_t_44 - six_r_S_dot_in_axes5_z*six_r_w_1_t_30 -
-            six_r_qd_1*six_r_w_1_t_33 - six_r_qd_1_t*six_r_w_1_t_31 -
-            six_r_qd_1_t_4*six_r_w_1_t_39)
+        six_r_qd_4_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_25
+        six_r_qd_4_t_2 = six_r_S_dot_in_axes5_z*six_r_w_1_t_26
+        six_r_qd_4_t_3 = (
+        inv_six_r_w_1_t_24*(six_r_qd_4_t + six_r_qd_1_t_16*six_r_w_1_t_28 +
+            six_r_qd_1_t_17*six_r_w_1_t_40 - six_r_qd_4_t_2 - six_r_qd_1*six_r_w_1_t_29 -
+            six_r_qd_1_t_15*six_r_w_1_t_27 - six_r_qd_1_t_18*six_r_w_1_t_35)
         )
         # (six_r-qd_5) rate of joint 5
-        six_r_qd_5_t = (
-        inv_six_r_w_1_t_12*(six_r_qd_1*six_r_w_1_t_18 + six_r_qd_1_t_2*six_r_w_1_t_14 +
-            six_r_qd_1_t_3*six_r_w_1_t_25 + six_r_qd_1_t_4*six_r_w_1_t_22 -
-            six_r_S_dot_in_axes5_y*six_r_w_1_t_13 - six_r_qd_4_t*six_r_w_1_t_15)
+        six_r_qd_5_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_9
+        six_r_qd_5_t_2 = (
+        inv_six_r_w_1_t_8*(six_r_qd_1*six_r_w_1_t_14 + six_r_qd_1_t_16*six_r_w_1_t_10 +
+            six_r_qd_1_t_17*six_r_w_1_t_21 + six_r_qd_1_t_18*six_r_w_1_t_18 - six_r_qd_5_t -
+            six_r_qd_4_t_3*six_r_w_1_t_11)
         )
         ok = (
-        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
-            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
+        ok & (abs(six_r_w_1_t_8) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_24) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_45) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_63) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_75) > _TOLERANCE * six_r_size)
         )
         # (six_r-qd_1) rate of joint 1
         out_qd[_qd_six_r[0][leg]] = six_r_qd_1
         # (six_r-qd_2) rate of joint 2
-        out_qd[_qd_six_r[1][leg]] = six_r_qd_1_t_4
+        out_qd[_qd_six_r[1][leg]] = six_r_qd_1_t_18
         # (six_r-qd_3) rate of joint 3
-        out_qd[_qd_six_r[2][leg]] = -six_r_qd_1_t_3
+        out_qd[_qd_six_r[2][leg]] = -six_r_qd_1_t_17
         # (six_r-qd_4) rate of joint 4
-        out_qd[_qd_six_r[3][leg]] = -six_r_qd_4_t
+        out_qd[_qd_six_r[3][leg]] = -six_r_qd_4_t_3
         # (six_r-qd_5) rate of joint 5
-        out_qd[_qd_six_r[4][leg]] = -six_r_qd_5_t
+        out_qd[_qd_six_r[4][leg]] = -six_r_qd_5_t_2
     return ok, (out_qd,)
 
 
-# joint_accelerations: 3630 mul, 2382 add, 30 div, 30 sqrt, 60 trig
+# joint_accelerations: 3618 mul, 2373 add, 30 div, 30 sqrt, 60 trig
 def _run_joint_accelerations(m, X, V, A, q):
     sqrt = m.sqrt
     sin = m.sin
@@ -9849,6 +10028,23 @@ def _run_joint_accelerations(m, X, V, A, q):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx,
@@ -9864,6 +10060,22 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-h_4) first moment of link 4 about the origin of link 4
+        six_r_e_2_in_axes5_z = cos(six_r_q_4)
+        six_r_h_4_t = sin(six_r_q_4)
+        # (six_r-J_5) inertia tensor of link 5 about the connection point
+        six_r_e_4_in_axes5_x = cos(six_r_q_5)
+        six_r_J_5_t = sin(six_r_q_5)
+        # (six_r-S) from the base point to the connection point
+        six_r_q_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
         six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
@@ -9876,22 +10088,14 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
-        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = cos(six_r_q_4)
-        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = sin(six_r_q_4)
-        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = cos(six_r_q_5)
-        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
-        six_r_S_dot_t = six_r_c_3*six_r_s_4
-        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
+        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
+        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
+        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -9904,9 +10108,9 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
-        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
+        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
+        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -9932,15 +10136,6 @@ def _run_joint_accelerations(m, X, V, A, q):
         axis_x_six_r_axes5_z = (
         axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
         )
-        six_r_q_x = (
-        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
-        )
-        six_r_q_y = (
-        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
-        )
-        six_r_q_z = (
-        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
-        )
         six_r_S_dot_t_14 = omega_y*six_r_q_z - omega_z*six_r_q_y
         six_r_S_dot_t_15 = omega_z*six_r_q_x - omega_x*six_r_q_z
         six_r_S_dot_t_16 = omega_x*six_r_q_y - omega_y*six_r_q_x
@@ -9960,19 +10155,25 @@ def _run_joint_accelerations(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
+        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes4_z = (
+        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
+        )
+        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
+        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
+        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_x = (
+        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
+        )
+        six_r_r_3_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
+        )
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -9980,10 +10181,10 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
+        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
+        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -9992,17 +10193,17 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
+        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
+        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
+        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -10013,30 +10214,31 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
+        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
-            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
+        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
+            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
+            six_r_J_5_t*six_r_r_4_in_axes4_z)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -10069,141 +10271,155 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
+        six_r_end_p1_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
+        )
+        six_r_n_m1_t_11 = (
+        six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_t_12 = (
+        six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_in_axes4_z = (
+        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
+        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_n_m2_t = (
+        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_t_2 = (
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
-        six_r_w_1_t = (
-        six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        six_r_w_1_t = six_r_n_m1_t_11*six_r_size
+        six_r_w_1_t_2 = six_r_n_m2_t*six_r_size
+        six_r_w_1_t_3 = six_r_n_m1_t_12*six_r_size
+        six_r_w_1_t_4 = six_r_n_m2_t_2*six_r_size
+        six_r_w_1_t_5 = six_r_n_m1_in_axes4_z*six_r_size
+        six_r_w_1_t_6 = six_r_n_m2_in_axes4_z*six_r_size
+        six_r_w_1_t_7 = six_r_end_p1_in_axes5_y*six_r_size
+        six_r_w_1_t_8 = sqrt(six_r_size_t + six_r_w_1_t_7*six_r_w_1_t_7)
+        inv_six_r_w_1_t_8 = 1.0/six_r_w_1_t_8
+        six_r_w_1_t_9 = inv_six_r_w_1_t_8*six_r_platform_joint_offset_x
+        six_r_w_1_t_10 = inv_six_r_w_1_t_8*six_r_w_1_t_7
+        six_r_w_1_t_11 = six_r_w_1_t_10*six_r_w_1_t_6
+        six_r_w_1_t_12 = six_r_w_1_t_11*six_r_w_1_t_9
+        six_r_w_1_t_13 = six_r_w_1_t_6 - six_r_w_1_t_10*six_r_w_1_t_11
+        six_r_w_1_t_14 = six_r_v_1_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_10*six_r_w_1_t_2
+        six_r_w_1_t_15 = six_r_v_1_in_axes5_y - six_r_w_1_t_14*six_r_w_1_t_9
+        six_r_w_1_t_16 = six_r_w_1_t_2 + six_r_w_1_t_10*six_r_w_1_t_14
+        six_r_w_1_t_17 = six_r_w_1_t_10*six_r_w_1_t_4
+        six_r_w_1_t_18 = six_r_v_2_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_v_2_in_axes5_y - six_r_w_1_t_18*six_r_w_1_t_9
+        six_r_w_1_t_20 = six_r_w_1_t_4 + six_r_w_1_t_10*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_w_1_t_17 - six_r_v_3_in_axes5_y*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_3_in_axes5_y + six_r_w_1_t_21*six_r_w_1_t_9
+        six_r_w_1_t_23 = six_r_w_1_t_4 - six_r_w_1_t_10*six_r_w_1_t_21
+        six_r_w_1_t_24 = (
+        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_13*six_r_w_1_t_13 + six_r_w_1_t_5*six_r_w_1_t_5)
         )
-        six_r_w_1_t_2 = (
-        six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        inv_six_r_w_1_t_24 = 1.0/six_r_w_1_t_24
+        six_r_w_1_t_25 = inv_six_r_w_1_t_24*six_r_w_1_t_12
+        six_r_w_1_t_26 = inv_six_r_w_1_t_24*six_r_v_4_in_axes5_z
+        six_r_w_1_t_27 = inv_six_r_w_1_t_24*six_r_w_1_t_5
+        six_r_w_1_t_28 = inv_six_r_w_1_t_24*six_r_w_1_t_13
+        six_r_w_1_t_29 = (
+        six_r_w_1_t*six_r_w_1_t_27 + six_r_w_1_t_15*six_r_w_1_t_25 + six_r_w_1_t_16*six_r_w_1_t_28
+            - six_r_v_1_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_3 = (
-        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_30 = six_r_w_1_t_25*six_r_w_1_t_29 - six_r_w_1_t_15
+        six_r_w_1_t_31 = six_r_v_1_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_29
+        six_r_w_1_t_32 = six_r_w_1_t_27*six_r_w_1_t_29 - six_r_w_1_t
+        six_r_w_1_t_33 = six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_16
+        six_r_w_1_t_34 = six_r_w_1_t_27*six_r_w_1_t_3
+        six_r_w_1_t_35 = (
+        six_r_w_1_t_34 + six_r_w_1_t_19*six_r_w_1_t_25 + six_r_w_1_t_20*six_r_w_1_t_28 -
+            six_r_v_2_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_36 = six_r_w_1_t_25*six_r_w_1_t_35 - six_r_w_1_t_19
+        six_r_w_1_t_37 = six_r_v_2_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_35
+        six_r_w_1_t_38 = six_r_w_1_t_27*six_r_w_1_t_35 - six_r_w_1_t_3
+        six_r_w_1_t_39 = six_r_w_1_t_28*six_r_w_1_t_35 - six_r_w_1_t_20
+        six_r_w_1_t_40 = (
+        six_r_w_1_t_34 + six_r_w_1_t_22*six_r_w_1_t_25 + six_r_w_1_t_23*six_r_w_1_t_28 -
+            six_r_v_3_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_5 = six_r_size*six_r_w_1_t
-        six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
-        six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
-        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
-        six_r_w_1_t_9 = (
-        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
+        six_r_w_1_t_41 = six_r_w_1_t_25*six_r_w_1_t_40 - six_r_w_1_t_22
+        six_r_w_1_t_42 = six_r_v_3_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_40
+        six_r_w_1_t_43 = six_r_w_1_t_27*six_r_w_1_t_40 - six_r_w_1_t_3
+        six_r_w_1_t_44 = six_r_w_1_t_28*six_r_w_1_t_40 - six_r_w_1_t_23
+        six_r_w_1_t_45 = (
+        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_30*six_r_w_1_t_30 +
+            six_r_w_1_t_31*six_r_w_1_t_31 + six_r_w_1_t_32*six_r_w_1_t_32 +
+            six_r_w_1_t_33*six_r_w_1_t_33)
         )
-        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
-        six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
-        six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
-        inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
-        six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x
-        six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11
-        six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14
-        six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15
-        six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15
-        six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_14*six_r_w_1_t_6
-        six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18
-        six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18
-        six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8
-        six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21
-        six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22
-        six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22
-        six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13
-        six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25
-        six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25
-        six_r_w_1_t_28 = (
-        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_16*six_r_w_1_t_16 +
-            six_r_w_1_t_17*six_r_w_1_t_17 + six_r_w_1_t_9*six_r_w_1_t_9)
+        inv_six_r_w_1_t_45 = 1.0/six_r_w_1_t_45
+        six_r_w_1_t_46 = inv_six_r_w_1_t_45*six_r_v_1_in_axes5_x
+        six_r_w_1_t_47 = inv_six_r_w_1_t_45*six_r_w_1_t_30
+        six_r_w_1_t_48 = inv_six_r_w_1_t_45*six_r_w_1_t_31
+        six_r_w_1_t_49 = inv_six_r_w_1_t_45*six_r_w_1_t_32
+        six_r_w_1_t_50 = inv_six_r_w_1_t_45*six_r_w_1_t_33
+        six_r_w_1_t_51 = (
+        six_r_v_2_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_36*six_r_w_1_t_47 +
+            six_r_w_1_t_37*six_r_w_1_t_48 + six_r_w_1_t_38*six_r_w_1_t_49 +
+            six_r_w_1_t_39*six_r_w_1_t_50
         )
-        inv_six_r_w_1_t_28 = 1.0/six_r_w_1_t_28
-        six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16
-        six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z
-        six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9
-        six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17
-        six_r_w_1_t_33 = (
-        six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32 +
-            six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_52 = six_r_v_2_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_51
+        six_r_w_1_t_53 = six_r_w_1_t_36 - six_r_w_1_t_47*six_r_w_1_t_51
+        six_r_w_1_t_54 = six_r_w_1_t_37 - six_r_w_1_t_48*six_r_w_1_t_51
+        six_r_w_1_t_55 = six_r_w_1_t_38 - six_r_w_1_t_49*six_r_w_1_t_51
+        six_r_w_1_t_56 = six_r_w_1_t_39 - six_r_w_1_t_50*six_r_w_1_t_51
+        six_r_w_1_t_57 = (
+        six_r_v_3_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_41*six_r_w_1_t_47 +
+            six_r_w_1_t_42*six_r_w_1_t_48 + six_r_w_1_t_43*six_r_w_1_t_49 +
+            six_r_w_1_t_44*six_r_w_1_t_50
         )
-        six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19
-        six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33
-        six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5
-        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20
-        six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7
-        six_r_w_1_t_39 = (
-        six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32 -
-            six_r_v_2_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_58 = six_r_v_3_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_57
+        six_r_w_1_t_59 = six_r_w_1_t_41 - six_r_w_1_t_47*six_r_w_1_t_57
+        six_r_w_1_t_60 = six_r_w_1_t_42 - six_r_w_1_t_48*six_r_w_1_t_57
+        six_r_w_1_t_61 = six_r_w_1_t_43 - six_r_w_1_t_49*six_r_w_1_t_57
+        six_r_w_1_t_62 = six_r_w_1_t_44 - six_r_w_1_t_50*six_r_w_1_t_57
+        six_r_w_1_t_63 = (
+        sqrt(six_r_w_1_t_52*six_r_w_1_t_52 + six_r_w_1_t_53*six_r_w_1_t_53 +
+            six_r_w_1_t_54*six_r_w_1_t_54 + six_r_w_1_t_55*six_r_w_1_t_55 +
+            six_r_w_1_t_56*six_r_w_1_t_56)
         )
-        six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23
-        six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39
-        six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7
-        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24
-        six_r_w_1_t_44 = (
-        six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32 -
-            six_r_v_3_in_axes5_z*six_r_w_1_t_30
+        inv_six_r_w_1_t_63 = 1.0/six_r_w_1_t_63
+        six_r_w_1_t_64 = inv_six_r_w_1_t_63*six_r_w_1_t_52
+        six_r_w_1_t_65 = inv_six_r_w_1_t_63*six_r_w_1_t_53
+        six_r_w_1_t_66 = inv_six_r_w_1_t_63*six_r_w_1_t_54
+        six_r_w_1_t_67 = inv_six_r_w_1_t_63*six_r_w_1_t_55
+        six_r_w_1_t_68 = inv_six_r_w_1_t_63*six_r_w_1_t_56
+        six_r_w_1_t_69 = (
+        six_r_w_1_t_58*six_r_w_1_t_64 + six_r_w_1_t_59*six_r_w_1_t_65 +
+            six_r_w_1_t_60*six_r_w_1_t_66 + six_r_w_1_t_61*six_r_w_1_t_67 +
+            six_r_w_1_t_62*six_r_w_1_t_68
         )
-        six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26
-        six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44
-        six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7
-        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27
-        six_r_w_1_t_49 = (
-        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_34*six_r_w_1_t_34 +
-            six_r_w_1_t_35*six_r_w_1_t_35 + six_r_w_1_t_36*six_r_w_1_t_36 +
-            six_r_w_1_t_37*six_r_w_1_t_37)
+        six_r_w_1_t_70 = six_r_w_1_t_58 - six_r_w_1_t_64*six_r_w_1_t_69
+        six_r_w_1_t_71 = six_r_w_1_t_59 - six_r_w_1_t_65*six_r_w_1_t_69
+        six_r_w_1_t_72 = six_r_w_1_t_60 - six_r_w_1_t_66*six_r_w_1_t_69
+        six_r_w_1_t_73 = six_r_w_1_t_61 - six_r_w_1_t_67*six_r_w_1_t_69
+        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_69
+        six_r_w_1_t_75 = (
+        sqrt(six_r_w_1_t_70*six_r_w_1_t_70 + six_r_w_1_t_71*six_r_w_1_t_71 +
+            six_r_w_1_t_72*six_r_w_1_t_72 + six_r_w_1_t_73*six_r_w_1_t_73 +
+            six_r_w_1_t_74*six_r_w_1_t_74)
         )
-        inv_six_r_w_1_t_49 = 1.0/six_r_w_1_t_49
-        six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x
-        six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34
-        six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35
-        six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36
-        six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37
-        six_r_w_1_t_55 = (
-        six_r_v_2_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_40*six_r_w_1_t_51 +
-            six_r_w_1_t_41*six_r_w_1_t_52 + six_r_w_1_t_42*six_r_w_1_t_53 +
-            six_r_w_1_t_43*six_r_w_1_t_54
-        )
-        six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55
-        six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55
-        six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55
-        six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55
-        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55
-        six_r_w_1_t_61 = (
-        six_r_v_3_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_45*six_r_w_1_t_51 +
-            six_r_w_1_t_46*six_r_w_1_t_52 + six_r_w_1_t_47*six_r_w_1_t_53 +
-            six_r_w_1_t_48*six_r_w_1_t_54
-        )
-        six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61
-        six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61
-        six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61
-        six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61
-        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61
-        six_r_w_1_t_67 = (
-        sqrt(six_r_w_1_t_56*six_r_w_1_t_56 + six_r_w_1_t_57*six_r_w_1_t_57 +
-            six_r_w_1_t_58*six_r_w_1_t_58 + six_r_w_1_t_59*six_r_w_1_t_59 +
-            six_r_w_1_t_60*six_r_w_1_t_60)
-        )
-        inv_six_r_w_1_t_67 = 1.0/six_r_w_1_t_67
-        six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56
-        six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57
-        six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58
-        six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59
-        six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60
-        six_r_w_1_t_73 = (
-        six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69 +
-            six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72
-        )
-        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73
-        six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73
-        six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73
-        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73
-        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73
-        six_r_w_1_t_79 = (
-        sqrt(six_r_w_1_t_74*six_r_w_1_t_74 + six_r_w_1_t_75*six_r_w_1_t_75 +
-            six_r_w_1_t_76*six_r_w_1_t_76 + six_r_w_1_t_77*six_r_w_1_t_77 +
-            six_r_w_1_t_78*six_r_w_1_t_78)
-        )
+        inv_six_r_w_1_t_75 = 1.0/six_r_w_1_t_75
+        six_r_w_1_t_76 = inv_six_r_w_1_t_75*six_r_w_1_t_70
+        six_r_w_1_t_77 = inv_six_r_w_1_t_75*six_r_w_1_t_71
+        six_r_w_1_t_78 = inv_six_r_w_1_t_75*six_r_w_1_t_72
+        # (six_r-m1_w_1) moment part 1 of reciprocal wrench 1
+        six_r_m1_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_73
+        # (six_r-m2_w_1) moment part 2 of reciprocal wrench 1
+        six_r_m2_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_74
         # (six_r-eta_1) rate at which the joints turn along moment direction 1
         six_r_omega_in_axes5_x = (
         axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z
@@ -10211,9 +10427,9 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_omega_in_axes5_y = (
         axis_y_six_r_axes5_x*omega_x + axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z
         )
-        six_r_eta_1 = (
+        six_r_eta_1_2 = (
         six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_x
+            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_x
         )
         # (six_r-eta_2) rate at which the joints turn along moment direction 2
         six_r_omega_in_axes5_z = (
@@ -10221,300 +10437,335 @@ def _run_joint_accelerations(m, X, V, A, q):
         )
         six_r_eta_2_t = (
         six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_z
+            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_z
         )
         # (six_r-qd_1) rate of joint 1
-        inv_six_r_w_1_t_79 = 1.0/six_r_w_1_t_79
-        six_r_qd_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_74
-        six_r_qd_1_t_2 = inv_six_r_w_1_t_79*six_r_w_1_t_75
-        six_r_qd_1_t_3 = inv_six_r_w_1_t_79*six_r_w_1_t_76
-        six_r_qd_1_t_4 = inv_six_r_w_1_t_79*six_r_w_1_t_77
-        six_r_qd_1_t_5 = inv_six_r_w_1_t_79*six_r_w_1_t_78
-        six_r_qd_1_t_6 = six_r_eta_1*six_r_size
-        six_r_qd_1_t_7 = six_r_eta_2_t*six_r_size
-        six_r_qd_1_t_8 = (
-        inv_six_r_w_1_t_79*(six_r_S_dot_in_axes5_y*six_r_qd_1_t_2 + six_r_qd_1_t_5*six_r_qd_1_t_7
-            - six_r_S_dot_in_axes5_x*six_r_qd_1_t - six_r_S_dot_in_axes5_z*six_r_qd_1_t_3 -
-            six_r_qd_1_t_4*six_r_qd_1_t_6)
+        six_r_qd_1_t_3 = six_r_S_dot_in_axes5_x*six_r_w_1_t_46
+        six_r_qd_1_t_4 = six_r_S_dot_in_axes5_y*six_r_w_1_t_47
+        six_r_qd_1_t_5 = six_r_S_dot_in_axes5_z*six_r_w_1_t_48
+        six_r_qd_1_t_6 = six_r_S_dot_in_axes5_x*six_r_w_1_t_64
+        six_r_qd_1_t_7 = six_r_S_dot_in_axes5_y*six_r_w_1_t_65
+        six_r_qd_1_t_8 = six_r_S_dot_in_axes5_z*six_r_w_1_t_66
+        six_r_qd_1_t_9 = six_r_S_dot_in_axes5_x*six_r_w_1_t_76
+        six_r_qd_1_t_10 = six_r_S_dot_in_axes5_y*six_r_w_1_t_77
+        six_r_qd_1_t_11 = six_r_S_dot_in_axes5_z*six_r_w_1_t_78
+        six_r_qd_1_t_15 = six_r_eta_1_2*six_r_size
+        six_r_qd_1_t_16 = six_r_eta_2_t*six_r_size
+        six_r_qd_1_t_17 = (
+        inv_six_r_w_1_t_75*(six_r_qd_1_t_10 + six_r_m2_w_1_t*six_r_qd_1_t_16 - six_r_qd_1_t_11 -
+            six_r_qd_1_t_9 - six_r_m1_w_1_t*six_r_qd_1_t_15)
         )
-        six_r_qd_1_t_9 = (
-        -inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_y*six_r_w_1_t_69 + six_r_qd_1_t_7*six_r_w_1_t_72
-            - six_r_S_dot_in_axes5_x*six_r_w_1_t_68 - six_r_S_dot_in_axes5_z*six_r_w_1_t_70 -
-            six_r_qd_1_t_6*six_r_w_1_t_71 - six_r_qd_1_t_8*six_r_w_1_t_73)
+        six_r_qd_1_t_18 = (
+        -inv_six_r_w_1_t_63*(six_r_qd_1_t_7 + six_r_qd_1_t_16*six_r_w_1_t_68 - six_r_qd_1_t_6 -
+            six_r_qd_1_t_8 - six_r_qd_1_t_15*six_r_w_1_t_67 - six_r_qd_1_t_17*six_r_w_1_t_69)
         )
         six_r_qd_1 = (
-        inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_x*six_r_w_1_t_50 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_52 + six_r_qd_1_t_6*six_r_w_1_t_53 +
-            six_r_qd_1_t_8*six_r_w_1_t_61 - six_r_S_dot_in_axes5_y*six_r_w_1_t_51 -
-            six_r_qd_1_t_7*six_r_w_1_t_54 - six_r_qd_1_t_9*six_r_w_1_t_55)
+        inv_six_r_w_1_t_45*(six_r_qd_1_t_3 + six_r_qd_1_t_5 + six_r_qd_1_t_15*six_r_w_1_t_49 +
+            six_r_qd_1_t_17*six_r_w_1_t_57 - six_r_qd_1_t_4 - six_r_qd_1_t_16*six_r_w_1_t_50 -
+            six_r_qd_1_t_18*six_r_w_1_t_51)
         )
         # (six_r-qd_4) rate of joint 4
-        six_r_qd_4_t = (
-        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_7*six_r_w_1_t_32
-            + six_r_qd_1_t_8*six_r_w_1_t_44 - six_r_S_dot_in_axes5_z*six_r_w_1_t_30 -
-            six_r_qd_1*six_r_w_1_t_33 - six_r_qd_1_t_6*six_r_w_1_t_31 -
-            six_r_qd_1_t_9*six_r_w_1_t_39)
+        six_r_qd_4_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_25
+        six_r_qd_4_t_2 = six_r_S_dot_in_axes5_z*six_r_w_1_t_26
+        six_r_qd_4_t_3 = (
+        inv_six_r_w_1_t_24*(six_r_qd_4_t + six_r_qd_1_t_16*six_r_w_1_t_28 +
+            six_r_qd_1_t_17*six_r_w_1_t_40 - six_r_qd_4_t_2 - six_r_qd_1*six_r_w_1_t_29 -
+            six_r_qd_1_t_15*six_r_w_1_t_27 - six_r_qd_1_t_18*six_r_w_1_t_35)
         )
         # (six_r-qd_5) rate of joint 5
-        six_r_qd_5_t = (
-        inv_six_r_w_1_t_12*(six_r_qd_1*six_r_w_1_t_18 + six_r_qd_1_t_7*six_r_w_1_t_14 +
-            six_r_qd_1_t_8*six_r_w_1_t_25 + six_r_qd_1_t_9*six_r_w_1_t_22 -
-            six_r_S_dot_in_axes5_y*six_r_w_1_t_13 - six_r_qd_4_t*six_r_w_1_t_15)
+        six_r_qd_5_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_9
+        six_r_qd_5_t_2 = (
+        inv_six_r_w_1_t_8*(six_r_qd_1*six_r_w_1_t_14 + six_r_qd_1_t_16*six_r_w_1_t_10 +
+            six_r_qd_1_t_17*six_r_w_1_t_21 + six_r_qd_1_t_18*six_r_w_1_t_18 - six_r_qd_5_t -
+            six_r_qd_4_t_3*six_r_w_1_t_11)
         )
         # (six_r-omega_1) angular velocity of link 1
-        six_r_omega_1_in_axes2_x = six_r_c_2*six_r_qd_1
-        six_r_omega_1_in_axes2_y = -six_r_qd_1*six_r_s_2
+        six_r_omega_1_in_axes2_x_2 = six_r_c_2*six_r_qd_1
+        six_r_omega_1_in_axes2_y_2 = -six_r_qd_1*six_r_s_2
         six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1
         six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1
         six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1
         # (six_r-W_1) centripetal tensor of link 1
-        six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y
-        six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z
-        six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
+        six_r_W_1_in_axes5_xy_2 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y
+        six_r_W_1_in_axes5_xz_2 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z
+        six_r_W_1_in_axes5_yz_2 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
         # (six_r-omega_2) angular velocity of link 2
-        six_r_omega_2_in_axes3_x = (
-        six_r_omega_1_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y
+        six_r_omega_2_in_axes3_x_2 = (
+        six_r_omega_1_in_axes2_x_2*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y_2
         )
-        six_r_omega_2_in_axes3_y = (
-        six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
+        six_r_omega_2_in_axes3_y_2 = (
+        six_r_c_3*six_r_omega_1_in_axes2_x_2 + six_r_omega_1_in_axes2_y_2*six_r_s_3
         )
-        six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_9
-        six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_9
-        six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_c_4*six_r_qd_1_t_9
+        six_r_omega_2_in_axes5_x_2 = (
+        six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_18
+        )
+        six_r_omega_2_in_axes5_y_2 = (
+        six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_18
+        )
+        six_r_omega_2_in_axes5_z_2 = (
+        six_r_omega_1_in_axes5_z + six_r_e_2_in_axes5_z*six_r_qd_1_t_18
+        )
         # (six_r-W_2) centripetal tensor of link 2
-        six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_9
-        six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y
-        six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z
-        six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z
+        six_r_W_2_in_axes2_yz_2 = six_r_omega_1_in_axes2_y_2*six_r_qd_1_t_18
+        six_r_W_2_in_axes5_xy_2 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_y_2
+        six_r_W_2_in_axes5_xz_2 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_z_2
+        six_r_W_2_in_axes5_yz_2 = six_r_omega_2_in_axes5_y_2*six_r_omega_2_in_axes5_z_2
         # (six_r-omega_3) angular velocity of link 3
-        six_r_omega_3_in_axes3_z = six_r_qd_1_t_9 - six_r_qd_1_t_8
-        six_r_omega_3_in_axes4_x = (
-        six_r_omega_3_in_axes3_z*six_r_s_4 - six_r_c_4*six_r_omega_2_in_axes3_x
+        six_r_omega_3_in_axes3_z_2 = six_r_qd_1_t_18 - six_r_qd_1_t_17
+        six_r_omega_3_in_axes4_x_2 = (
+        six_r_h_4_t*six_r_omega_3_in_axes3_z_2 - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x_2
         )
-        six_r_omega_3_in_axes4_y = (
-        six_r_c_4*six_r_omega_3_in_axes3_z + six_r_omega_2_in_axes3_x*six_r_s_4
+        six_r_omega_3_in_axes4_y_2 = (
+        six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z_2 + six_r_h_4_t*six_r_omega_2_in_axes3_x_2
         )
-        six_r_omega_3_t = six_r_omega_3_in_axes4_x*six_r_s_5
-        six_r_omega_3_t_2 = six_r_c_5*six_r_omega_3_in_axes4_x
-        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_2_in_axes3_y
-        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_2_in_axes3_y*six_r_s_5
+        six_r_omega_3_t_3 = six_r_J_5_t*six_r_omega_3_in_axes4_x_2
+        six_r_omega_3_t_4 = six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x_2
+        six_r_omega_3_in_axes5_x_2 = (
+        six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y_2
+        )
+        six_r_omega_3_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_J_5_t*six_r_omega_2_in_axes3_y_2
         # (six_r-W_3) centripetal tensor of link 3
-        six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y
+        six_r_W_3_in_axes5_xy_2 = six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_y_2
         # (six_r-omega_4) angular velocity of link 4
-        six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t
-        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_4_in_axes4_z
-        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_4_in_axes4_z*six_r_s_5
+        six_r_omega_4_in_axes4_z_2 = six_r_omega_2_in_axes3_y_2 - six_r_qd_4_t_3
+        six_r_omega_4_in_axes5_x_2 = (
+        six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z_2
+        )
+        six_r_omega_4_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_J_5_t*six_r_omega_4_in_axes4_z_2
         # (six_r-W_4) centripetal tensor of link 4
-        six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y
+        six_r_W_4_in_axes5_xy_2 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_y_2
         # (six_r-omega_5) angular velocity of link 5
-        six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y - six_r_qd_5_t
-        # (six_r-a_p) acceleration of the connection point without its centripetal part
-        six_r_a_p_x = t_ddot_x + alpha_y*six_r_q_z - alpha_z*six_r_q_y
-        six_r_a_p_y = t_ddot_y + alpha_z*six_r_q_x - alpha_x*six_r_q_z
-        six_r_a_p_z = t_ddot_z + alpha_x*six_r_q_y - alpha_y*six_r_q_x
+        six_r_omega_5_in_axes5_z_2 = six_r_omega_3_in_axes4_y_2 - six_r_qd_5_t_2
+        # (six_r-W_5) centripetal tensor of link 5
+        six_r_W_5_t_4 = six_r_omega_4_in_axes5_y_2*six_r_omega_4_in_axes5_y_2
+        six_r_W_5_t_5 = six_r_omega_5_in_axes5_z_2*six_r_omega_5_in_axes5_z_2
+        six_r_W_5_t_6 = six_r_W_5_t_4 + six_r_W_5_t_5
+        six_r_W_5_in_axes5_xz_2 = six_r_omega_4_in_axes5_x_2*six_r_omega_5_in_axes5_z_2
         # (six_r-S_ddot) acceleration of the connection point
-        six_r_S_ddot_x = six_r_a_p_x + omega_y*six_r_S_dot_t_16 - omega_z*six_r_S_dot_t_15
-        six_r_S_ddot_y = six_r_a_p_y + omega_z*six_r_S_dot_t_14 - omega_x*six_r_S_dot_t_16
-        six_r_S_ddot_z = six_r_a_p_z + omega_x*six_r_S_dot_t_15 - omega_y*six_r_S_dot_t_14
+        six_r_S_ddot_x = t_ddot_x + B_p_xy*six_r_q_y + B_p_xz*six_r_q_z - W_p_t_4*six_r_q_x
+        six_r_S_ddot_y = t_ddot_y + B_p_yx*six_r_q_x + B_p_yz*six_r_q_z - W_p_t_5*six_r_q_y
+        six_r_S_ddot_z = t_ddot_z + B_p_zx*six_r_q_x + B_p_zy*six_r_q_y - W_p_t_6*six_r_q_z
+        six_r_S_ddot_in_axes5_x = (
+        axis_x_six_r_axes5_x*six_r_S_ddot_x + axis_x_six_r_axes5_y*six_r_S_ddot_y +
+            axis_x_six_r_axes5_z*six_r_S_ddot_z
+        )
+        six_r_S_ddot_in_axes5_y = (
+        axis_y_six_r_axes5_x*six_r_S_ddot_x + axis_y_six_r_axes5_y*six_r_S_ddot_y +
+            axis_y_six_r_axes5_z*six_r_S_ddot_z
+        )
+        six_r_S_ddot_in_axes5_z = (
+        axis_z_six_r_axes5_x*six_r_S_ddot_x + axis_z_six_r_axes5_y*six_r_S_ddot_y +
+            axis_z_six_r_axes5_z*six_r_S_ddot_z
+        )
         # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_9
-        six_r_zeta_2_in_axes3_x = (
-        six_r_W_2_in_axes2_yz*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y
+        six_r_zeta_2_in_axes2_y_2 = -six_r_omega_1_in_axes2_x_2*six_r_qd_1_t_18
+        six_r_zeta_2_in_axes3_x_2 = (
+        six_r_W_2_in_axes2_yz_2*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y_2
         )
-        six_r_zeta_2_in_axes3_y = (
-        six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
+        six_r_zeta_2_in_axes3_y_2 = (
+        six_r_W_2_in_axes2_yz_2*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y_2
         )
-        six_r_zeta_2_t = six_r_c_4*six_r_zeta_2_in_axes3_x
-        six_r_zeta_2_in_axes5_z = six_r_s_4*six_r_zeta_2_in_axes3_x
-        six_r_zeta_2_in_axes5_x = six_r_c_5*six_r_zeta_2_in_axes3_y - six_r_s_5*six_r_zeta_2_t
-        six_r_zeta_2_in_axes5_y = -six_r_c_5*six_r_zeta_2_t - six_r_s_5*six_r_zeta_2_in_axes3_y
+        six_r_zeta_2_t_2 = six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x_2
+        six_r_zeta_2_in_axes5_z_2 = six_r_h_4_t*six_r_zeta_2_in_axes3_x_2
+        six_r_zeta_2_in_axes5_x_2 = (
+        six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y_2 - six_r_J_5_t*six_r_zeta_2_t_2
+        )
+        six_r_zeta_2_in_axes5_y_2 = (
+        -six_r_J_5_t*six_r_zeta_2_in_axes3_y_2 - six_r_e_4_in_axes5_x*six_r_zeta_2_t_2
+        )
+        # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        six_r_zeta_3_t_2 = six_r_omega_2_in_axes3_y_2*six_r_qd_1_t_17
+        six_r_zeta_3_in_axes3_y = six_r_omega_2_in_axes3_x_2*six_r_qd_1_t_17
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
-        six_r_beta_3_in_axes3_x = (
-        six_r_zeta_2_in_axes3_x - six_r_omega_2_in_axes3_y*six_r_qd_1_t_8
-        )
-        six_r_beta_3_in_axes3_y = (
-        six_r_zeta_2_in_axes3_y + six_r_omega_2_in_axes3_x*six_r_qd_1_t_8
-        )
-        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_c_4
-        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_s_4
+        six_r_beta_3_in_axes3_x_2 = six_r_zeta_2_in_axes3_x_2 - six_r_zeta_3_t_2
+        six_r_beta_3_in_axes3_y_2 = six_r_zeta_2_in_axes3_y_2 + six_r_zeta_3_in_axes3_y
+        six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*six_r_e_2_in_axes5_z
+        six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*six_r_h_4_t
+        # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        six_r_zeta_4_in_axes4_x_2 = -six_r_omega_3_in_axes4_y_2*six_r_qd_4_t_3
+        six_r_zeta_4_in_axes4_y = six_r_omega_3_in_axes4_x_2*six_r_qd_4_t_3
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
-        six_r_beta_4_in_axes4_x = -six_r_beta_3_t - six_r_omega_3_in_axes4_y*six_r_qd_4_t
-        six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_omega_3_in_axes4_x*six_r_qd_4_t
-        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_c_5
-        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*six_r_s_5
-        six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*six_r_s_5
-        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_c_5 - six_r_beta_4_t_2
+        six_r_beta_4_in_axes4_x_2 = six_r_zeta_4_in_axes4_x_2 - six_r_beta_3_t_2
+        six_r_beta_4_in_axes4_y_2 = six_r_beta_3_in_axes4_y_2 + six_r_zeta_4_in_axes4_y
+        six_r_beta_4_t_3 = six_r_beta_3_in_axes3_y_2*six_r_e_4_in_axes5_x
+        six_r_beta_4_in_axes5_x_2 = six_r_beta_4_t_3 + six_r_J_5_t*six_r_beta_4_in_axes4_x_2
+        six_r_beta_4_t_4 = six_r_J_5_t*six_r_beta_3_in_axes3_y_2
+        six_r_beta_4_in_axes5_y_2 = (
+        six_r_beta_4_in_axes4_x_2*six_r_e_4_in_axes5_x - six_r_beta_4_t_4
+        )
+        # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
+        six_r_zeta_5_t_2 = six_r_omega_4_in_axes5_y_2*six_r_qd_5_t_2
+        six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x_2*six_r_qd_5_t_2
         # (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations
-        six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x - six_r_omega_4_in_axes5_y*six_r_qd_5_t
-        six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y + six_r_omega_4_in_axes5_x*six_r_qd_5_t
+        six_r_beta_5_in_axes5_x_2 = six_r_beta_4_in_axes5_x_2 - six_r_zeta_5_t_2
+        six_r_beta_5_in_axes5_y_2 = six_r_beta_4_in_axes5_y_2 + six_r_zeta_5_in_axes5_y
         # (six_r-bias) acceleration of the connection point at zero joint accelerations
         six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
-        six_r_bias_t = six_r_joint2_offset_x*six_r_s_2
-        six_r_bias_t_2 = six_r_bias_t*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
-        six_r_bias_t_3 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t*six_r_s_3
-        six_r_bias_t_4 = six_r_bias_t_2*six_r_c_4
-        six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_s_4
-        six_r_d_2_in_axes5_x = six_r_bias_t_3*six_r_c_5 - six_r_bias_t_4*six_r_s_5
-        six_r_d_2_in_axes5_y = -six_r_bias_t_3*six_r_s_5 - six_r_bias_t_4*six_r_c_5
-        six_r_bias_t_5 = six_r_joint3_offset_x*six_r_s_3
-        six_r_bias_t_6 = six_r_c_3*six_r_joint3_offset_x
-        six_r_bias_t_7 = six_r_bias_t_5*six_r_c_4
-        six_r_d_3_in_axes5_z = six_r_bias_t_5*six_r_s_4
-        six_r_d_3_in_axes5_x = six_r_bias_t_6*six_r_c_5 - six_r_bias_t_7*six_r_s_5
-        six_r_d_3_in_axes5_y = -six_r_bias_t_6*six_r_s_5 - six_r_bias_t_7*six_r_c_5
-        six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x
-        six_r_bias_t_8 = six_r_joint4_offset_x*six_r_s_5
-        six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x
-        six_r_bias_t_9 = six_r_joint5_offset_x*six_r_s_5
-        six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y
-        six_r_bias_t_11 = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y
-        six_r_bias_t_12 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
-        six_r_bias_t_13 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
-        six_r_bias_t_14 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
-        six_r_bias_t_15 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
-        six_r_bias_t_16 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
-        six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
-        six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y
-        six_r_bias_in_axes5_x = (
-        six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y + six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
-            six_r_bias_t_8*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
-            six_r_bias_t_9*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
-            six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
-            six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
-            six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
-            six_r_d_5_in_axes5_x*(six_r_bias_t_10 + six_r_bias_t_11) -
-            six_r_platform_joint_offset_x*(six_r_bias_t_11 +
-            six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z)
+        six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_4 = six_r_bias_t_3*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
+        six_r_bias_t_5 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t_3*six_r_s_3
+        six_r_bias_t_6 = six_r_bias_t_4*six_r_e_2_in_axes5_z
+        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_h_4_t
+        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_6
+        six_r_d_2_in_axes5_y = -six_r_J_5_t*six_r_bias_t_5 - six_r_bias_t_6*six_r_e_4_in_axes5_x
+        six_r_bias_t_10 = six_r_joint3_offset_x*six_r_s_3
+        six_r_bias_t_11 = six_r_c_3*six_r_joint3_offset_x
+        six_r_bias_t_12 = six_r_bias_t_10*six_r_e_2_in_axes5_z
+        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_h_4_t
+        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_12
+        six_r_d_3_in_axes5_y = -six_r_J_5_t*six_r_bias_t_11 - six_r_bias_t_12*six_r_e_4_in_axes5_x
+        six_r_d_4_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint4_offset_x
+        six_r_bias_t_16 = six_r_J_5_t*six_r_joint4_offset_x
+        six_r_d_5_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint5_offset_x
+        six_r_bias_t_17 = six_r_J_5_t*six_r_joint5_offset_x
+        six_r_bias_t_19 = six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes4_y_2
+        six_r_bias_t_20 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_x_2
+        six_r_bias_t_21 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
+        six_r_bias_t_22 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
+        six_r_bias_t_23 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
+        six_r_bias_t_24 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_x_2
+        six_r_bias_t_25 = six_r_omega_2_in_axes5_y_2*six_r_omega_2_in_axes5_y_2
+        six_r_bias_t_26 = six_r_omega_2_in_axes5_z_2*six_r_omega_2_in_axes5_z_2
+        six_r_bias_t_27 = six_r_W_4_in_axes5_xy_2 + six_r_beta_4_in_axes4_y_2
+        six_r_bias_in_axes5_x_2 = (
+        six_r_W_1_in_axes5_xy_2*six_r_d_2_in_axes5_y +
+            six_r_W_1_in_axes5_xz_2*six_r_d_2_in_axes5_z +
+            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy_2 - six_r_zeta_2_in_axes5_z_2) +
+            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz_2 + six_r_zeta_2_in_axes5_y_2) -
+            six_r_W_5_t_6*six_r_platform_joint_offset_x - six_r_bias_t_16*(six_r_W_3_in_axes5_xy_2
+            - six_r_beta_3_in_axes4_y_2) - six_r_bias_t_17*(six_r_W_4_in_axes5_xy_2 -
+            six_r_beta_4_in_axes4_y_2) - six_r_d_2_in_axes5_x*(six_r_bias_t_22 + six_r_bias_t_23)
+            - six_r_d_3_in_axes5_x*(six_r_bias_t_25 + six_r_bias_t_26) -
+            six_r_d_4_in_axes5_x*(six_r_bias_t_19 +
+            six_r_omega_3_in_axes5_y_2*six_r_omega_3_in_axes5_y_2) -
+            six_r_d_5_in_axes5_x*(six_r_W_5_t_4 + six_r_bias_t_19)
         )
-        six_r_bias_in_axes5_y = (
-        six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z +
-            six_r_bias_t_18*six_r_d_5_in_axes5_x + six_r_bias_t_18*six_r_platform_joint_offset_x +
-            six_r_bias_t_8*(six_r_bias_t_10 + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
-            six_r_bias_t_9*(six_r_bias_t_10 + six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x) +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17)
+        six_r_bias_in_axes5_y_2 = (
+        six_r_W_1_in_axes5_xy_2*six_r_d_2_in_axes5_x +
+            six_r_W_1_in_axes5_yz_2*six_r_d_2_in_axes5_z + six_r_bias_t_16*(six_r_bias_t_19 +
+            six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_x_2) +
+            six_r_bias_t_17*(six_r_bias_t_19 + six_r_bias_t_20) +
+            six_r_bias_t_27*six_r_d_5_in_axes5_x + six_r_bias_t_27*six_r_platform_joint_offset_x +
+            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy_2 + six_r_zeta_2_in_axes5_z_2) +
+            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz_2 - six_r_zeta_2_in_axes5_x_2) +
+            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy_2 + six_r_beta_3_in_axes4_y_2) -
+            six_r_d_2_in_axes5_y*(six_r_bias_t_21 + six_r_bias_t_23) -
+            six_r_d_3_in_axes5_y*(six_r_bias_t_24 + six_r_bias_t_26)
         )
-        six_r_bias_in_axes5_z = (
-        six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_c_5 +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) +
-            six_r_platform_joint_offset_x*(six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z -
-            six_r_beta_5_in_axes5_y) - six_r_bias_t_8*(six_r_beta_4_t +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*six_r_s_5) -
-            six_r_bias_t_9*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
-            six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16)
+        six_r_bias_in_axes5_z_2 = (
+        six_r_W_1_in_axes5_xz_2*six_r_d_2_in_axes5_x +
+            six_r_W_1_in_axes5_yz_2*six_r_d_2_in_axes5_y +
+            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz_2 - six_r_zeta_2_in_axes5_y_2) +
+            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz_2 + six_r_zeta_2_in_axes5_x_2) +
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_4 + six_r_beta_3_t_2*six_r_e_4_in_axes5_x +
+            six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_x_2) +
+            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_x_2 -
+            six_r_beta_4_in_axes5_y_2) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz_2 -
+            six_r_beta_5_in_axes5_y_2) - six_r_bias_t_16*(six_r_beta_4_t_3 +
+            six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_y_2 - six_r_J_5_t*six_r_beta_3_t_2)
+            - six_r_bias_t_17*(six_r_beta_4_in_axes5_x_2 +
+            six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_y_2) -
+            six_r_d_2_in_axes5_z*(six_r_bias_t_21 + six_r_bias_t_22) -
+            six_r_d_3_in_axes5_z*(six_r_bias_t_24 + six_r_bias_t_25)
         )
         # (six_r-rel) acceleration of the connection point left to the joint accelerations
-        six_r_rel_in_axes5_x = (
-        axis_x_six_r_axes5_x*six_r_S_ddot_x + axis_x_six_r_axes5_y*six_r_S_ddot_y +
-            axis_x_six_r_axes5_z*six_r_S_ddot_z - six_r_bias_in_axes5_x
-        )
-        six_r_rel_in_axes5_y = (
-        axis_y_six_r_axes5_x*six_r_S_ddot_x + axis_y_six_r_axes5_y*six_r_S_ddot_y +
-            axis_y_six_r_axes5_z*six_r_S_ddot_z - six_r_bias_in_axes5_y
-        )
-        six_r_rel_in_axes5_z = (
-        axis_z_six_r_axes5_x*six_r_S_ddot_x + axis_z_six_r_axes5_y*six_r_S_ddot_y +
-            axis_z_six_r_axes5_z*six_r_S_ddot_z - six_r_bias_in_axes5_z
-        )
+        six_r_rel_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_bias_in_axes5_x_2
+        six_r_rel_in_axes5_y = six_r_S_ddot_in_axes5_y - six_r_bias_in_axes5_y_2
+        six_r_rel_in_axes5_z = six_r_S_ddot_in_axes5_z - six_r_bias_in_axes5_z_2
         # (six_r-nd_m1) rate of moment direction 1
         six_r_nd_m1_t = (
         six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_z -
             six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_x
         )
-        six_r_nd_m1_in_axes5_x = -six_r_nd_m1_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x
-        six_r_nd_m1_in_axes5_y = six_r_eta_2_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y
+        six_r_nd_m1_in_axes5_x_2 = (
+        -six_r_nd_m1_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x_2
+        )
+        six_r_nd_m1_in_axes5_y_2 = (
+        six_r_eta_2_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y_2
+        )
         # (six_r-nu_1) bias of the angular acceleration along moment direction 1
-        six_r_nu_1_t = six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y
-        six_r_nu_1_t_2 = (
-        six_r_beta_5_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_beta_5_in_axes5_y*six_r_n_m1_in_axes5_y
+        six_r_nu_1_t_7 = six_r_end_p1_in_axes5_y*six_r_omega_4_in_axes5_y_2
+        six_r_nu_1_t_8 = (
+        six_r_beta_5_in_axes5_x_2*six_r_end_p1_in_axes5_y -
+            six_r_beta_5_in_axes5_y_2*six_r_n_m1_in_axes5_y
         )
-        six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - six_r_omega_in_axes5_x
-        six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - six_r_omega_in_axes5_y
-        six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - six_r_omega_in_axes5_z
-        six_r_nu_1_t_6 = (
-        six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 + six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
-            six_r_nu_1_t_5*(six_r_nu_1_t + six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x)
+        six_r_nu_1_t_9 = six_r_omega_4_in_axes5_x_2 - six_r_omega_in_axes5_x
+        six_r_nu_1_t_10 = six_r_omega_4_in_axes5_y_2 - six_r_omega_in_axes5_y
+        six_r_nu_1_t_11 = six_r_omega_5_in_axes5_z_2 - six_r_omega_in_axes5_z
+        six_r_nu_1_t_12 = (
+        six_r_nd_m1_in_axes5_x_2*six_r_nu_1_t_9 + six_r_nd_m1_in_axes5_y_2*six_r_nu_1_t_10 +
+            six_r_nu_1_t_11*(six_r_nu_1_t_7 + six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x_2)
         )
-        six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6
+        six_r_nu_1_2 = six_r_nu_1_t_8 - six_r_nu_1_t_12
         # (six_r-nd_m2) rate of moment direction 2
-        six_r_nd_m2_in_axes5_y = six_r_eta_1 - six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y
-        six_r_nd_m2_in_axes5_z = six_r_nd_m1_t - six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z
+        six_r_nd_m2_in_axes5_y_2 = (
+        six_r_eta_1_2 - six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y_2
+        )
+        six_r_nd_m2_in_axes5_z_2 = (
+        six_r_nd_m1_t - six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z_2
+        )
         # (six_r-nu_2) bias of the angular acceleration along moment direction 2
-        six_r_nu_2_t = (
-        six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_y*six_r_n_m2_in_axes5_z
+        six_r_nu_2_t_3 = (
+        six_r_beta_5_in_axes5_y_2*six_r_end_p1_in_axes5_z -
+            six_r_beta_4_in_axes4_y_2*six_r_end_p1_in_axes5_y
         )
-        six_r_nu_2_t_2 = (
-        six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 + six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
-            six_r_nu_1_t_3*(six_r_nu_1_t + six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z)
+        six_r_nu_2_t_4 = (
+        six_r_nd_m2_in_axes5_y_2*six_r_nu_1_t_10 + six_r_nd_m2_in_axes5_z_2*six_r_nu_1_t_11 +
+            six_r_nu_1_t_9*(six_r_nu_1_t_7 + six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z_2)
         )
-        six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2
+        six_r_nu_2_2 = six_r_nu_2_t_3 - six_r_nu_2_t_4
         # (six_r-etad_1) acceleration with which the joints turn along moment direction 1
         six_r_alpha_in_axes5_y = (
         alpha_x*axis_y_six_r_axes5_x + alpha_y*axis_y_six_r_axes5_y + alpha_z*axis_y_six_r_axes5_z
         )
         six_r_etad_1_t = (
-        six_r_n_m2_in_axes5_z*(alpha_x*axis_x_six_r_axes5_x + alpha_y*axis_x_six_r_axes5_y +
+        six_r_end_p1_in_axes5_y*(alpha_x*axis_x_six_r_axes5_x + alpha_y*axis_x_six_r_axes5_y +
             alpha_z*axis_x_six_r_axes5_z) - six_r_alpha_in_axes5_y*six_r_n_m1_in_axes5_y
         )
-        six_r_etad_1 = six_r_nu_1 - six_r_etad_1_t
+        six_r_etad_1 = six_r_nu_1_2 - six_r_etad_1_t
         # (six_r-etad_2) acceleration with which the joints turn along moment direction 2
         six_r_etad_2_t = (
         six_r_alpha_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_n_m2_in_axes5_z*(alpha_x*axis_z_six_r_axes5_x + alpha_y*axis_z_six_r_axes5_y +
+            six_r_end_p1_in_axes5_y*(alpha_x*axis_z_six_r_axes5_x + alpha_y*axis_z_six_r_axes5_y +
             alpha_z*axis_z_six_r_axes5_z)
         )
-        six_r_etad_2 = six_r_nu_2 - six_r_etad_2_t
+        six_r_etad_2 = six_r_nu_2_2 - six_r_etad_2_t
         # (six_r-qdd_1) acceleration of joint 1
         six_r_qdd_1_t = six_r_etad_1*six_r_size
         six_r_qdd_1_t_2 = six_r_etad_2*six_r_size
         six_r_qdd_1_t_3 = (
-        inv_six_r_w_1_t_79*(six_r_qd_1_t*six_r_rel_in_axes5_x +
-            six_r_qd_1_t_3*six_r_rel_in_axes5_z + six_r_qd_1_t_4*six_r_qdd_1_t +
-            six_r_qd_1_t_5*six_r_qdd_1_t_2 - six_r_qd_1_t_2*six_r_rel_in_axes5_y)
+        inv_six_r_w_1_t_75*(six_r_m1_w_1_t*six_r_qdd_1_t + six_r_m2_w_1_t*six_r_qdd_1_t_2 +
+            six_r_rel_in_axes5_x*six_r_w_1_t_76 + six_r_rel_in_axes5_z*six_r_w_1_t_78 -
+            six_r_rel_in_axes5_y*six_r_w_1_t_77)
         )
         six_r_qdd_1_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_qdd_1_t*six_r_w_1_t_71 + six_r_qdd_1_t_2*six_r_w_1_t_72 +
-            six_r_rel_in_axes5_x*six_r_w_1_t_68 + six_r_rel_in_axes5_z*six_r_w_1_t_70 -
-            six_r_qdd_1_t_3*six_r_w_1_t_73 - six_r_rel_in_axes5_y*six_r_w_1_t_69)
+        inv_six_r_w_1_t_63*(six_r_qdd_1_t*six_r_w_1_t_67 + six_r_qdd_1_t_2*six_r_w_1_t_68 +
+            six_r_rel_in_axes5_x*six_r_w_1_t_64 + six_r_rel_in_axes5_z*six_r_w_1_t_66 -
+            six_r_qdd_1_t_3*six_r_w_1_t_69 - six_r_rel_in_axes5_y*six_r_w_1_t_65)
         )
         six_r_qdd_1_t_5 = (
-        inv_six_r_w_1_t_49*(six_r_qdd_1_t_3*six_r_w_1_t_61 + six_r_qdd_1_t_4*six_r_w_1_t_55 +
-            six_r_rel_in_axes5_y*six_r_w_1_t_51 - six_r_qdd_1_t*six_r_w_1_t_53 -
-            six_r_qdd_1_t_2*six_r_w_1_t_54 - six_r_rel_in_axes5_x*six_r_w_1_t_50 -
-            six_r_rel_in_axes5_z*six_r_w_1_t_52)
+        inv_six_r_w_1_t_45*(six_r_qdd_1_t_3*six_r_w_1_t_57 + six_r_qdd_1_t_4*six_r_w_1_t_51 +
+            six_r_rel_in_axes5_y*six_r_w_1_t_47 - six_r_qdd_1_t*six_r_w_1_t_49 -
+            six_r_qdd_1_t_2*six_r_w_1_t_50 - six_r_rel_in_axes5_x*six_r_w_1_t_46 -
+            six_r_rel_in_axes5_z*six_r_w_1_t_48)
         )
         # (six_r-qdd_4) acceleration of joint 4
         six_r_qdd_4 = (
-        inv_six_r_w_1_t_28*(six_r_qdd_1_t*six_r_w_1_t_31 + six_r_qdd_1_t_2*six_r_w_1_t_32 +
-            six_r_qdd_1_t_3*six_r_w_1_t_44 + six_r_qdd_1_t_4*six_r_w_1_t_39 +
-            six_r_rel_in_axes5_z*six_r_w_1_t_30 - six_r_qdd_1_t_5*six_r_w_1_t_33 -
-            six_r_rel_in_axes5_y*six_r_w_1_t_29)
+        inv_six_r_w_1_t_24*(six_r_qdd_1_t*six_r_w_1_t_27 + six_r_qdd_1_t_2*six_r_w_1_t_28 +
+            six_r_qdd_1_t_3*six_r_w_1_t_40 + six_r_qdd_1_t_4*six_r_w_1_t_35 +
+            six_r_rel_in_axes5_z*six_r_w_1_t_26 - six_r_qdd_1_t_5*six_r_w_1_t_29 -
+            six_r_rel_in_axes5_y*six_r_w_1_t_25)
         )
         # (six_r-qdd_5) acceleration of joint 5
         six_r_qdd_5 = (
-        inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*six_r_w_1_t_14 + six_r_qdd_1_t_3*six_r_w_1_t_25 +
-            six_r_qdd_1_t_5*six_r_w_1_t_18 + six_r_rel_in_axes5_y*six_r_w_1_t_13 -
-            six_r_qdd_1_t_4*six_r_w_1_t_22 - six_r_qdd_4*six_r_w_1_t_15)
+        inv_six_r_w_1_t_8*(six_r_qdd_1_t_2*six_r_w_1_t_10 + six_r_qdd_1_t_3*six_r_w_1_t_21 +
+            six_r_qdd_1_t_5*six_r_w_1_t_14 + six_r_rel_in_axes5_y*six_r_w_1_t_9 -
+            six_r_qdd_1_t_4*six_r_w_1_t_18 - six_r_qdd_4*six_r_w_1_t_11)
         )
         ok = (
-        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
-            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
+        ok & (abs(six_r_w_1_t_8) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_24) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_45) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_63) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_75) > _TOLERANCE * six_r_size)
         )
         # (six_r-qdd_1) acceleration of joint 1
         out_qdd[_qdd_six_r[0][leg]] = -six_r_qdd_1_t_5
@@ -10529,7 +10780,7 @@ def _run_joint_accelerations(m, X, V, A, q):
     return ok, (out_qdd,)
 
 
-# legs: 5502 mul, 4050 add, 30 div, 30 sqrt, 60 trig
+# legs: 5490 mul, 4041 add, 30 div, 30 sqrt, 60 trig
 def _run_legs(m, X, V, A, q):
     sqrt = m.sqrt
     sin = m.sin
@@ -10594,6 +10845,23 @@ def _run_legs(m, X, V, A, q):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         six_r_J_1_in_spec1_xx, six_r_J_2_in_spec2_xy, six_r_J_2_in_spec2_xz,
@@ -10623,6 +10891,22 @@ def _run_legs(m, X, V, A, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-h_4) first moment of link 4 about the origin of link 4
+        six_r_e_2_in_axes5_z = cos(six_r_q_4)
+        six_r_h_4_t = sin(six_r_q_4)
+        # (six_r-J_5) inertia tensor of link 5 about the connection point
+        six_r_e_4_in_axes5_x = cos(six_r_q_5)
+        six_r_J_5_t = sin(six_r_q_5)
+        # (six_r-S) from the base point to the connection point
+        six_r_q_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
         six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
@@ -10635,22 +10919,14 @@ def _run_legs(m, X, V, A, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
-        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = cos(six_r_q_4)
-        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = sin(six_r_q_4)
-        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = cos(six_r_q_5)
-        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
-        six_r_S_dot_t = six_r_c_3*six_r_s_4
-        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
+        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
+        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
+        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -10663,9 +10939,9 @@ def _run_legs(m, X, V, A, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
-        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
+        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
+        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -10691,15 +10967,6 @@ def _run_legs(m, X, V, A, q):
         axis_x_six_r_axes5_z = (
         axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
         )
-        six_r_q_x = (
-        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
-        )
-        six_r_q_y = (
-        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
-        )
-        six_r_q_z = (
-        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
-        )
         six_r_S_dot_t_14 = omega_y*six_r_q_z - omega_z*six_r_q_y
         six_r_S_dot_t_15 = omega_z*six_r_q_x - omega_x*six_r_q_z
         six_r_S_dot_t_16 = omega_x*six_r_q_y - omega_y*six_r_q_x
@@ -10719,19 +10986,25 @@ def _run_legs(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
+        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes4_z = (
+        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
+        )
+        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
+        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
+        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_x = (
+        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
+        )
+        six_r_r_3_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
+        )
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -10739,10 +11012,10 @@ def _run_legs(m, X, V, A, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
+        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
+        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -10751,17 +11024,17 @@ def _run_legs(m, X, V, A, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
+        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
+        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
+        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -10772,30 +11045,31 @@ def _run_legs(m, X, V, A, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
+        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
-            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
+        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
+            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
+            six_r_J_5_t*six_r_r_4_in_axes4_z)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -10828,150 +11102,160 @@ def _run_legs(m, X, V, A, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
+        six_r_end_p1_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
+        )
+        six_r_n_m1_t_11 = (
+        six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_t_12 = (
+        six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_in_axes4_z = (
+        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
+        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_n_m2_t = (
+        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_t_2 = (
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
-        six_r_w_1_t = (
-        six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        six_r_w_1_t = six_r_n_m1_t_11*six_r_size
+        six_r_w_1_t_2 = six_r_n_m2_t*six_r_size
+        six_r_w_1_t_3 = six_r_n_m1_t_12*six_r_size
+        six_r_w_1_t_4 = six_r_n_m2_t_2*six_r_size
+        six_r_w_1_t_5 = six_r_n_m1_in_axes4_z*six_r_size
+        six_r_w_1_t_6 = six_r_n_m2_in_axes4_z*six_r_size
+        six_r_w_1_t_7 = six_r_end_p1_in_axes5_y*six_r_size
+        six_r_w_1_t_8 = sqrt(six_r_size_t + six_r_w_1_t_7*six_r_w_1_t_7)
+        inv_six_r_w_1_t_8 = 1.0/six_r_w_1_t_8
+        six_r_w_1_t_9 = inv_six_r_w_1_t_8*six_r_platform_joint_offset_x
+        six_r_w_1_t_10 = inv_six_r_w_1_t_8*six_r_w_1_t_7
+        six_r_w_1_t_11 = six_r_w_1_t_10*six_r_w_1_t_6
+        six_r_w_1_t_12 = six_r_w_1_t_11*six_r_w_1_t_9
+        six_r_w_1_t_13 = six_r_w_1_t_6 - six_r_w_1_t_10*six_r_w_1_t_11
+        six_r_w_1_t_14 = six_r_v_1_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_10*six_r_w_1_t_2
+        six_r_w_1_t_15 = six_r_v_1_in_axes5_y - six_r_w_1_t_14*six_r_w_1_t_9
+        six_r_w_1_t_16 = six_r_w_1_t_2 + six_r_w_1_t_10*six_r_w_1_t_14
+        six_r_w_1_t_17 = six_r_w_1_t_10*six_r_w_1_t_4
+        six_r_w_1_t_18 = six_r_v_2_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_v_2_in_axes5_y - six_r_w_1_t_18*six_r_w_1_t_9
+        six_r_w_1_t_20 = six_r_w_1_t_4 + six_r_w_1_t_10*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_w_1_t_17 - six_r_v_3_in_axes5_y*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_3_in_axes5_y + six_r_w_1_t_21*six_r_w_1_t_9
+        six_r_w_1_t_23 = six_r_w_1_t_4 - six_r_w_1_t_10*six_r_w_1_t_21
+        six_r_w_1_t_24 = (
+        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_13*six_r_w_1_t_13 + six_r_w_1_t_5*six_r_w_1_t_5)
         )
-        six_r_w_1_t_2 = (
-        six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        inv_six_r_w_1_t_24 = 1.0/six_r_w_1_t_24
+        six_r_w_1_t_25 = inv_six_r_w_1_t_24*six_r_w_1_t_12
+        six_r_w_1_t_26 = inv_six_r_w_1_t_24*six_r_v_4_in_axes5_z
+        six_r_w_1_t_27 = inv_six_r_w_1_t_24*six_r_w_1_t_5
+        six_r_w_1_t_28 = inv_six_r_w_1_t_24*six_r_w_1_t_13
+        six_r_w_1_t_29 = (
+        six_r_w_1_t*six_r_w_1_t_27 + six_r_w_1_t_15*six_r_w_1_t_25 + six_r_w_1_t_16*six_r_w_1_t_28
+            - six_r_v_1_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_3 = (
-        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_30 = six_r_w_1_t_25*six_r_w_1_t_29 - six_r_w_1_t_15
+        six_r_w_1_t_31 = six_r_v_1_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_29
+        six_r_w_1_t_32 = six_r_w_1_t_27*six_r_w_1_t_29 - six_r_w_1_t
+        six_r_w_1_t_33 = six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_16
+        six_r_w_1_t_34 = six_r_w_1_t_27*six_r_w_1_t_3
+        six_r_w_1_t_35 = (
+        six_r_w_1_t_34 + six_r_w_1_t_19*six_r_w_1_t_25 + six_r_w_1_t_20*six_r_w_1_t_28 -
+            six_r_v_2_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_36 = six_r_w_1_t_25*six_r_w_1_t_35 - six_r_w_1_t_19
+        six_r_w_1_t_37 = six_r_v_2_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_35
+        six_r_w_1_t_38 = six_r_w_1_t_27*six_r_w_1_t_35 - six_r_w_1_t_3
+        six_r_w_1_t_39 = six_r_w_1_t_28*six_r_w_1_t_35 - six_r_w_1_t_20
+        six_r_w_1_t_40 = (
+        six_r_w_1_t_34 + six_r_w_1_t_22*six_r_w_1_t_25 + six_r_w_1_t_23*six_r_w_1_t_28 -
+            six_r_v_3_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_5 = six_r_size*six_r_w_1_t
-        six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
-        six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
-        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
-        six_r_w_1_t_9 = (
-        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
+        six_r_w_1_t_41 = six_r_w_1_t_25*six_r_w_1_t_40 - six_r_w_1_t_22
+        six_r_w_1_t_42 = six_r_v_3_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_40
+        six_r_w_1_t_43 = six_r_w_1_t_27*six_r_w_1_t_40 - six_r_w_1_t_3
+        six_r_w_1_t_44 = six_r_w_1_t_28*six_r_w_1_t_40 - six_r_w_1_t_23
+        six_r_w_1_t_45 = (
+        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_30*six_r_w_1_t_30 +
+            six_r_w_1_t_31*six_r_w_1_t_31 + six_r_w_1_t_32*six_r_w_1_t_32 +
+            six_r_w_1_t_33*six_r_w_1_t_33)
         )
-        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
-        six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
-        six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
-        inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
-        six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x
-        six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11
-        six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14
-        six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15
-        six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15
-        six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_14*six_r_w_1_t_6
-        six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18
-        six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18
-        six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8
-        six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21
-        six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22
-        six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22
-        six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13
-        six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25
-        six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25
-        six_r_w_1_t_28 = (
-        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_16*six_r_w_1_t_16 +
-            six_r_w_1_t_17*six_r_w_1_t_17 + six_r_w_1_t_9*six_r_w_1_t_9)
+        inv_six_r_w_1_t_45 = 1.0/six_r_w_1_t_45
+        six_r_w_1_t_46 = inv_six_r_w_1_t_45*six_r_v_1_in_axes5_x
+        six_r_w_1_t_47 = inv_six_r_w_1_t_45*six_r_w_1_t_30
+        six_r_w_1_t_48 = inv_six_r_w_1_t_45*six_r_w_1_t_31
+        six_r_w_1_t_49 = inv_six_r_w_1_t_45*six_r_w_1_t_32
+        six_r_w_1_t_50 = inv_six_r_w_1_t_45*six_r_w_1_t_33
+        six_r_w_1_t_51 = (
+        six_r_v_2_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_36*six_r_w_1_t_47 +
+            six_r_w_1_t_37*six_r_w_1_t_48 + six_r_w_1_t_38*six_r_w_1_t_49 +
+            six_r_w_1_t_39*six_r_w_1_t_50
         )
-        inv_six_r_w_1_t_28 = 1.0/six_r_w_1_t_28
-        six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16
-        six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z
-        six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9
-        six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17
-        six_r_w_1_t_33 = (
-        six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32 +
-            six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_52 = six_r_v_2_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_51
+        six_r_w_1_t_53 = six_r_w_1_t_36 - six_r_w_1_t_47*six_r_w_1_t_51
+        six_r_w_1_t_54 = six_r_w_1_t_37 - six_r_w_1_t_48*six_r_w_1_t_51
+        six_r_w_1_t_55 = six_r_w_1_t_38 - six_r_w_1_t_49*six_r_w_1_t_51
+        six_r_w_1_t_56 = six_r_w_1_t_39 - six_r_w_1_t_50*six_r_w_1_t_51
+        six_r_w_1_t_57 = (
+        six_r_v_3_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_41*six_r_w_1_t_47 +
+            six_r_w_1_t_42*six_r_w_1_t_48 + six_r_w_1_t_43*six_r_w_1_t_49 +
+            six_r_w_1_t_44*six_r_w_1_t_50
         )
-        six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19
-        six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33
-        six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5
-        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20
-        six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7
-        six_r_w_1_t_39 = (
-        six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32 -
-            six_r_v_2_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_58 = six_r_v_3_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_57
+        six_r_w_1_t_59 = six_r_w_1_t_41 - six_r_w_1_t_47*six_r_w_1_t_57
+        six_r_w_1_t_60 = six_r_w_1_t_42 - six_r_w_1_t_48*six_r_w_1_t_57
+        six_r_w_1_t_61 = six_r_w_1_t_43 - six_r_w_1_t_49*six_r_w_1_t_57
+        six_r_w_1_t_62 = six_r_w_1_t_44 - six_r_w_1_t_50*six_r_w_1_t_57
+        six_r_w_1_t_63 = (
+        sqrt(six_r_w_1_t_52*six_r_w_1_t_52 + six_r_w_1_t_53*six_r_w_1_t_53 +
+            six_r_w_1_t_54*six_r_w_1_t_54 + six_r_w_1_t_55*six_r_w_1_t_55 +
+            six_r_w_1_t_56*six_r_w_1_t_56)
         )
-        six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23
-        six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39
-        six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7
-        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24
-        six_r_w_1_t_44 = (
-        six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32 -
-            six_r_v_3_in_axes5_z*six_r_w_1_t_30
+        inv_six_r_w_1_t_63 = 1.0/six_r_w_1_t_63
+        six_r_w_1_t_64 = inv_six_r_w_1_t_63*six_r_w_1_t_52
+        six_r_w_1_t_65 = inv_six_r_w_1_t_63*six_r_w_1_t_53
+        six_r_w_1_t_66 = inv_six_r_w_1_t_63*six_r_w_1_t_54
+        six_r_w_1_t_67 = inv_six_r_w_1_t_63*six_r_w_1_t_55
+        six_r_w_1_t_68 = inv_six_r_w_1_t_63*six_r_w_1_t_56
+        six_r_w_1_t_69 = (
+        six_r_w_1_t_58*six_r_w_1_t_64 + six_r_w_1_t_59*six_r_w_1_t_65 +
+            six_r_w_1_t_60*six_r_w_1_t_66 + six_r_w_1_t_61*six_r_w_1_t_67 +
+            six_r_w_1_t_62*six_r_w_1_t_68
         )
-        six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26
-        six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44
-        six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7
-        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27
-        six_r_w_1_t_49 = (
-        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_34*six_r_w_1_t_34 +
-            six_r_w_1_t_35*six_r_w_1_t_35 + six_r_w_1_t_36*six_r_w_1_t_36 +
-            six_r_w_1_t_37*six_r_w_1_t_37)
+        six_r_w_1_t_70 = six_r_w_1_t_58 - six_r_w_1_t_64*six_r_w_1_t_69
+        six_r_w_1_t_71 = six_r_w_1_t_59 - six_r_w_1_t_65*six_r_w_1_t_69
+        six_r_w_1_t_72 = six_r_w_1_t_60 - six_r_w_1_t_66*six_r_w_1_t_69
+        six_r_w_1_t_73 = six_r_w_1_t_61 - six_r_w_1_t_67*six_r_w_1_t_69
+        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_69
+        six_r_w_1_t_75 = (
+        sqrt(six_r_w_1_t_70*six_r_w_1_t_70 + six_r_w_1_t_71*six_r_w_1_t_71 +
+            six_r_w_1_t_72*six_r_w_1_t_72 + six_r_w_1_t_73*six_r_w_1_t_73 +
+            six_r_w_1_t_74*six_r_w_1_t_74)
         )
-        inv_six_r_w_1_t_49 = 1.0/six_r_w_1_t_49
-        six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x
-        six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34
-        six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35
-        six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36
-        six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37
-        six_r_w_1_t_55 = (
-        six_r_v_2_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_40*six_r_w_1_t_51 +
-            six_r_w_1_t_41*six_r_w_1_t_52 + six_r_w_1_t_42*six_r_w_1_t_53 +
-            six_r_w_1_t_43*six_r_w_1_t_54
-        )
-        six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55
-        six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55
-        six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55
-        six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55
-        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55
-        six_r_w_1_t_61 = (
-        six_r_v_3_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_45*six_r_w_1_t_51 +
-            six_r_w_1_t_46*six_r_w_1_t_52 + six_r_w_1_t_47*six_r_w_1_t_53 +
-            six_r_w_1_t_48*six_r_w_1_t_54
-        )
-        six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61
-        six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61
-        six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61
-        six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61
-        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61
-        six_r_w_1_t_67 = (
-        sqrt(six_r_w_1_t_56*six_r_w_1_t_56 + six_r_w_1_t_57*six_r_w_1_t_57 +
-            six_r_w_1_t_58*six_r_w_1_t_58 + six_r_w_1_t_59*six_r_w_1_t_59 +
-            six_r_w_1_t_60*six_r_w_1_t_60)
-        )
-        inv_six_r_w_1_t_67 = 1.0/six_r_w_1_t_67
-        six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56
-        six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57
-        six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58
-        six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59
-        six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60
-        six_r_w_1_t_73 = (
-        six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69 +
-            six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72
-        )
-        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73
-        six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73
-        six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73
-        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73
-        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73
-        six_r_w_1_t_79 = (
-        sqrt(six_r_w_1_t_74*six_r_w_1_t_74 + six_r_w_1_t_75*six_r_w_1_t_75 +
-            six_r_w_1_t_76*six_r_w_1_t_76 + six_r_w_1_t_77*six_r_w_1_t_77 +
-            six_r_w_1_t_78*six_r_w_1_t_78)
-        )
+        inv_six_r_w_1_t_75 = 1.0/six_r_w_1_t_75
+        six_r_w_1_t_76 = inv_six_r_w_1_t_75*six_r_w_1_t_70
+        six_r_w_1_t_77 = inv_six_r_w_1_t_75*six_r_w_1_t_71
+        six_r_w_1_t_78 = inv_six_r_w_1_t_75*six_r_w_1_t_72
+        # (six_r-m1_w_1) moment part 1 of reciprocal wrench 1
+        six_r_m1_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_73
+        # (six_r-m2_w_1) moment part 2 of reciprocal wrench 1
+        six_r_m2_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_74
         # (six_r-w_2) force part of reciprocal wrench 2
-        inv_six_r_w_1_t_79 = 1.0/six_r_w_1_t_79
-        six_r_w_2_t = inv_six_r_w_1_t_79*six_r_w_1_t_74
-        six_r_w_2_t_2 = inv_six_r_w_1_t_79*six_r_w_1_t_75
-        six_r_w_2_t_3 = inv_six_r_w_1_t_79*six_r_w_1_t_76
-        six_r_w_2_t_4 = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73
-        six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 - six_r_w_2_t*six_r_w_2_t_4
-        six_r_w_2_in_axes5_y = six_r_w_2_t_2*six_r_w_2_t_4 - inv_six_r_w_1_t_67*six_r_w_1_t_69
-        six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 - six_r_w_2_t_3*six_r_w_2_t_4
+        six_r_w_2_t = inv_six_r_w_1_t_63*inv_six_r_w_1_t_75*six_r_w_1_t_69
+        six_r_w_2_in_axes5_x = inv_six_r_w_1_t_63*six_r_w_1_t_64 - six_r_w_1_t_76*six_r_w_2_t
+        six_r_w_2_in_axes5_y = six_r_w_1_t_77*six_r_w_2_t - inv_six_r_w_1_t_63*six_r_w_1_t_65
+        six_r_w_2_in_axes5_z = inv_six_r_w_1_t_63*six_r_w_1_t_66 - six_r_w_1_t_78*six_r_w_2_t
         six_r_w_2_x = (
         axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x + axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y +
             axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z
@@ -10985,30 +11269,24 @@ def _run_legs(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z
         )
         # (six_r-m1_w_2) moment part 1 of reciprocal wrench 2
-        six_r_m1_w_2_t = inv_six_r_w_1_t_79*six_r_w_1_t_77
-        six_r_m1_w_2 = (
-        six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_71 - six_r_m1_w_2_t*six_r_w_2_t_4)
-        )
+        six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_67 - six_r_m1_w_1_t*six_r_w_2_t)
         # (six_r-m2_w_2) moment part 2 of reciprocal wrench 2
-        six_r_m2_w_2_t = inv_six_r_w_1_t_79*six_r_w_1_t_78
-        six_r_m2_w_2 = (
-        six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_72 - six_r_m2_w_2_t*six_r_w_2_t_4)
-        )
+        six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_68 - six_r_m2_w_1_t*six_r_w_2_t)
         # (six_r-o_2) moment part of reciprocal wrench 2
-        six_r_o_2_t = six_r_m1_w_2*six_r_n_m2_in_axes5_z
-        six_r_o_2_in_axes5_z = six_r_m2_w_2*six_r_n_m2_in_axes5_z
+        six_r_o_2_t = six_r_end_p1_in_axes5_y*six_r_m1_w_2
+        six_r_o_2_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_2
         six_r_o_2_in_axes5_y = (
         six_r_m1_w_2*six_r_n_m1_in_axes5_y - six_r_end_p1_in_axes5_z*six_r_m2_w_2
         )
-        six_r_o_2_x = (
+        six_r_o_2_x_2 = (
         axis_y_six_r_axes5_x*six_r_o_2_in_axes5_y + axis_z_six_r_axes5_x*six_r_o_2_in_axes5_z -
             axis_x_six_r_axes5_x*six_r_o_2_t
         )
-        six_r_o_2_y = (
+        six_r_o_2_y_2 = (
         axis_y_six_r_axes5_y*six_r_o_2_in_axes5_y + axis_z_six_r_axes5_y*six_r_o_2_in_axes5_z -
             axis_x_six_r_axes5_y*six_r_o_2_t
         )
-        six_r_o_2_z = (
+        six_r_o_2_z_2 = (
         axis_y_six_r_axes5_z*six_r_o_2_in_axes5_y + axis_z_six_r_axes5_z*six_r_o_2_in_axes5_z -
             axis_x_six_r_axes5_z*six_r_o_2_t
         )
@@ -11019,9 +11297,9 @@ def _run_legs(m, X, V, A, q):
         six_r_omega_in_axes5_y = (
         axis_y_six_r_axes5_x*omega_x + axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z
         )
-        six_r_eta_1 = (
+        six_r_eta_1_2 = (
         six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_x
+            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_x
         )
         # (six_r-eta_2) rate at which the joints turn along moment direction 2
         six_r_omega_in_axes5_z = (
@@ -11029,111 +11307,125 @@ def _run_legs(m, X, V, A, q):
         )
         six_r_eta_2_t = (
         six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_z
+            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_z
         )
         # (six_r-qd_1) rate of joint 1
-        six_r_qd_1_t = six_r_eta_1*six_r_size
-        six_r_qd_1_t_2 = six_r_eta_2_t*six_r_size
-        six_r_qd_1_t_3 = (
-        inv_six_r_w_1_t_79*(six_r_S_dot_in_axes5_y*six_r_w_2_t_2 + six_r_m2_w_2_t*six_r_qd_1_t_2 -
-            six_r_S_dot_in_axes5_x*six_r_w_2_t - six_r_S_dot_in_axes5_z*six_r_w_2_t_3 -
-            six_r_m1_w_2_t*six_r_qd_1_t)
+        six_r_qd_1_t_3 = six_r_S_dot_in_axes5_x*six_r_w_1_t_46
+        six_r_qd_1_t_4 = six_r_S_dot_in_axes5_y*six_r_w_1_t_47
+        six_r_qd_1_t_5 = six_r_S_dot_in_axes5_z*six_r_w_1_t_48
+        six_r_qd_1_t_6 = six_r_S_dot_in_axes5_x*six_r_w_1_t_64
+        six_r_qd_1_t_7 = six_r_S_dot_in_axes5_y*six_r_w_1_t_65
+        six_r_qd_1_t_8 = six_r_S_dot_in_axes5_z*six_r_w_1_t_66
+        six_r_qd_1_t_9 = six_r_S_dot_in_axes5_x*six_r_w_1_t_76
+        six_r_qd_1_t_10 = six_r_S_dot_in_axes5_y*six_r_w_1_t_77
+        six_r_qd_1_t_11 = six_r_S_dot_in_axes5_z*six_r_w_1_t_78
+        six_r_qd_1_t_15 = six_r_eta_1_2*six_r_size
+        six_r_qd_1_t_16 = six_r_eta_2_t*six_r_size
+        six_r_qd_1_t_17 = (
+        inv_six_r_w_1_t_75*(six_r_qd_1_t_10 + six_r_m2_w_1_t*six_r_qd_1_t_16 - six_r_qd_1_t_11 -
+            six_r_qd_1_t_9 - six_r_m1_w_1_t*six_r_qd_1_t_15)
         )
-        six_r_qd_1_t_4 = (
-        -inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_y*six_r_w_1_t_69 + six_r_qd_1_t_2*six_r_w_1_t_72
-            - six_r_S_dot_in_axes5_x*six_r_w_1_t_68 - six_r_S_dot_in_axes5_z*six_r_w_1_t_70 -
-            six_r_qd_1_t*six_r_w_1_t_71 - six_r_qd_1_t_3*six_r_w_1_t_73)
+        six_r_qd_1_t_18 = (
+        -inv_six_r_w_1_t_63*(six_r_qd_1_t_7 + six_r_qd_1_t_16*six_r_w_1_t_68 - six_r_qd_1_t_6 -
+            six_r_qd_1_t_8 - six_r_qd_1_t_15*six_r_w_1_t_67 - six_r_qd_1_t_17*six_r_w_1_t_69)
         )
         six_r_qd_1 = (
-        inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_x*six_r_w_1_t_50 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_52 + six_r_qd_1_t*six_r_w_1_t_53 +
-            six_r_qd_1_t_3*six_r_w_1_t_61 - six_r_S_dot_in_axes5_y*six_r_w_1_t_51 -
-            six_r_qd_1_t_2*six_r_w_1_t_54 - six_r_qd_1_t_4*six_r_w_1_t_55)
+        inv_six_r_w_1_t_45*(six_r_qd_1_t_3 + six_r_qd_1_t_5 + six_r_qd_1_t_15*six_r_w_1_t_49 +
+            six_r_qd_1_t_17*six_r_w_1_t_57 - six_r_qd_1_t_4 - six_r_qd_1_t_16*six_r_w_1_t_50 -
+            six_r_qd_1_t_18*six_r_w_1_t_51)
         )
         # (six_r-qd_4) rate of joint 4
-        six_r_qd_4_t = (
-        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_2*six_r_w_1_t_32
-            + six_r_qd_1_t_3*six_r_w_1_t_44 - six_r_S_dot_in_axes5_z*six_r_w_1_t_30 -
-            six_r_qd_1*six_r_w_1_t_33 - six_r_qd_1_t*six_r_w_1_t_31 -
-            six_r_qd_1_t_4*six_r_w_1_t_39)
+        six_r_qd_4_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_25
+        six_r_qd_4_t_2 = six_r_S_dot_in_axes5_z*six_r_w_1_t_26
+        six_r_qd_4_t_3 = (
+        inv_six_r_w_1_t_24*(six_r_qd_4_t + six_r_qd_1_t_16*six_r_w_1_t_28 +
+            six_r_qd_1_t_17*six_r_w_1_t_40 - six_r_qd_4_t_2 - six_r_qd_1*six_r_w_1_t_29 -
+            six_r_qd_1_t_15*six_r_w_1_t_27 - six_r_qd_1_t_18*six_r_w_1_t_35)
         )
         # (six_r-qd_5) rate of joint 5
-        six_r_qd_5_t = (
-        inv_six_r_w_1_t_12*(six_r_qd_1*six_r_w_1_t_18 + six_r_qd_1_t_2*six_r_w_1_t_14 +
-            six_r_qd_1_t_3*six_r_w_1_t_25 + six_r_qd_1_t_4*six_r_w_1_t_22 -
-            six_r_S_dot_in_axes5_y*six_r_w_1_t_13 - six_r_qd_4_t*six_r_w_1_t_15)
+        six_r_qd_5_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_9
+        six_r_qd_5_t_2 = (
+        inv_six_r_w_1_t_8*(six_r_qd_1*six_r_w_1_t_14 + six_r_qd_1_t_16*six_r_w_1_t_10 +
+            six_r_qd_1_t_17*six_r_w_1_t_21 + six_r_qd_1_t_18*six_r_w_1_t_18 - six_r_qd_5_t -
+            six_r_qd_4_t_3*six_r_w_1_t_11)
         )
         # (six_r-omega_1) angular velocity of link 1
-        six_r_omega_1_in_axes2_x = six_r_c_2*six_r_qd_1
-        six_r_omega_1_in_axes2_y = -six_r_qd_1*six_r_s_2
+        six_r_omega_1_in_axes2_x_2 = six_r_c_2*six_r_qd_1
+        six_r_omega_1_in_axes2_y_2 = -six_r_qd_1*six_r_s_2
         six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1
         six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1
         six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1
         # (six_r-W_1) centripetal tensor of link 1
-        six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y
-        six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z
-        six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
+        six_r_W_1_in_axes5_xy_2 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y
+        six_r_W_1_in_axes5_xz_2 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z
+        six_r_W_1_in_axes5_yz_2 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
         # (six_r-omega_2) angular velocity of link 2
-        six_r_omega_2_in_axes3_x = (
-        six_r_omega_1_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y
+        six_r_omega_2_in_axes3_x_2 = (
+        six_r_omega_1_in_axes2_x_2*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y_2
         )
-        six_r_omega_2_in_axes3_y = (
-        six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
+        six_r_omega_2_in_axes3_y_2 = (
+        six_r_c_3*six_r_omega_1_in_axes2_x_2 + six_r_omega_1_in_axes2_y_2*six_r_s_3
         )
-        six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_4
-        six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_4
-        six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_c_4*six_r_qd_1_t_4
+        six_r_omega_2_in_axes5_x_2 = (
+        six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_18
+        )
+        six_r_omega_2_in_axes5_y_2 = (
+        six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_18
+        )
+        six_r_omega_2_in_axes5_z_2 = (
+        six_r_omega_1_in_axes5_z + six_r_e_2_in_axes5_z*six_r_qd_1_t_18
+        )
         # (six_r-W_2) centripetal tensor of link 2
-        six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4
-        six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y
-        six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y
-        six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z
-        six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z
+        six_r_W_2_in_axes2_yz_2 = six_r_omega_1_in_axes2_y_2*six_r_qd_1_t_18
+        six_r_W_2_in_axes2_xy_2 = six_r_omega_1_in_axes2_x_2*six_r_omega_1_in_axes2_y_2
+        six_r_W_2_in_axes5_xy_2 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_y_2
+        six_r_W_2_in_axes5_xz_2 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_z_2
+        six_r_W_2_in_axes5_yz_2 = six_r_omega_2_in_axes5_y_2*six_r_omega_2_in_axes5_z_2
         # (six_r-omega_3) angular velocity of link 3
-        six_r_omega_3_in_axes3_z = six_r_qd_1_t_4 - six_r_qd_1_t_3
-        six_r_omega_3_in_axes4_x = (
-        six_r_omega_3_in_axes3_z*six_r_s_4 - six_r_c_4*six_r_omega_2_in_axes3_x
+        six_r_omega_3_in_axes3_z_2 = six_r_qd_1_t_18 - six_r_qd_1_t_17
+        six_r_omega_3_in_axes4_x_2 = (
+        six_r_h_4_t*six_r_omega_3_in_axes3_z_2 - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x_2
         )
-        six_r_omega_3_in_axes4_y = (
-        six_r_c_4*six_r_omega_3_in_axes3_z + six_r_omega_2_in_axes3_x*six_r_s_4
+        six_r_omega_3_in_axes4_y_2 = (
+        six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z_2 + six_r_h_4_t*six_r_omega_2_in_axes3_x_2
         )
-        six_r_omega_3_t = six_r_omega_3_in_axes4_x*six_r_s_5
-        six_r_omega_3_t_2 = six_r_c_5*six_r_omega_3_in_axes4_x
-        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_2_in_axes3_y
-        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_2_in_axes3_y*six_r_s_5
+        six_r_omega_3_t_3 = six_r_J_5_t*six_r_omega_3_in_axes4_x_2
+        six_r_omega_3_t_4 = six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x_2
+        six_r_omega_3_in_axes5_x_2 = (
+        six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y_2
+        )
+        six_r_omega_3_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_J_5_t*six_r_omega_2_in_axes3_y_2
         # (six_r-W_3) centripetal tensor of link 3
-        six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x
-        six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z
-        six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y
-        six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z
-        six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2
-        six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z
-        six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y
+        six_r_W_3_t_4 = six_r_omega_2_in_axes3_x_2*six_r_omega_2_in_axes3_x_2
+        six_r_W_3_t_5 = six_r_omega_3_in_axes3_z_2*six_r_omega_3_in_axes3_z_2
+        six_r_W_3_in_axes3_xy_2 = six_r_omega_2_in_axes3_x_2*six_r_omega_2_in_axes3_y_2
+        six_r_W_3_in_axes3_xz_2 = six_r_omega_2_in_axes3_x_2*six_r_omega_3_in_axes3_z_2
+        six_r_W_3_t_6 = six_r_W_3_t_4 + six_r_W_3_t_5
+        six_r_W_3_in_axes3_yz_2 = six_r_omega_2_in_axes3_y_2*six_r_omega_3_in_axes3_z_2
+        six_r_W_3_in_axes5_xy_2 = six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_y_2
         # (six_r-omega_4) angular velocity of link 4
-        six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t
-        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_4_in_axes4_z
-        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_4_in_axes4_z*six_r_s_5
+        six_r_omega_4_in_axes4_z_2 = six_r_omega_2_in_axes3_y_2 - six_r_qd_4_t_3
+        six_r_omega_4_in_axes5_x_2 = (
+        six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z_2
+        )
+        six_r_omega_4_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_J_5_t*six_r_omega_4_in_axes4_z_2
         # (six_r-W_4) centripetal tensor of link 4
-        six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y
-        six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z
-        six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z
-        six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y
+        six_r_W_4_in_axes4_xy_2 = six_r_omega_3_in_axes4_x_2*six_r_omega_3_in_axes4_y_2
+        six_r_W_4_in_axes4_xz_2 = six_r_omega_3_in_axes4_x_2*six_r_omega_4_in_axes4_z_2
+        six_r_W_4_in_axes4_yz_2 = six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes4_z_2
+        six_r_W_4_in_axes5_xy_2 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_y_2
         # (six_r-omega_5) angular velocity of link 5
-        six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y - six_r_qd_5_t
+        six_r_omega_5_in_axes5_z_2 = six_r_omega_3_in_axes4_y_2 - six_r_qd_5_t_2
         # (six_r-W_5) centripetal tensor of link 5
-        six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y
-        six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z
-        six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2
-        six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z
-        six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z
-        # (six_r-a_p) acceleration of the connection point without its centripetal part
-        six_r_a_p_x = t_ddot_x + alpha_y*six_r_q_z - alpha_z*six_r_q_y
-        six_r_a_p_y = t_ddot_y + alpha_z*six_r_q_x - alpha_x*six_r_q_z
-        six_r_a_p_z = t_ddot_z + alpha_x*six_r_q_y - alpha_y*six_r_q_x
+        six_r_W_5_t_4 = six_r_omega_4_in_axes5_y_2*six_r_omega_4_in_axes5_y_2
+        six_r_W_5_t_5 = six_r_omega_5_in_axes5_z_2*six_r_omega_5_in_axes5_z_2
+        six_r_W_5_t_6 = six_r_W_5_t_4 + six_r_W_5_t_5
+        six_r_W_5_in_axes5_xz_2 = six_r_omega_4_in_axes5_x_2*six_r_omega_5_in_axes5_z_2
+        six_r_W_5_in_axes5_yz_2 = six_r_omega_4_in_axes5_y_2*six_r_omega_5_in_axes5_z_2
         # (six_r-S_ddot) acceleration of the connection point
-        six_r_S_ddot_x = six_r_a_p_x + omega_y*six_r_S_dot_t_16 - omega_z*six_r_S_dot_t_15
-        six_r_S_ddot_y = six_r_a_p_y + omega_z*six_r_S_dot_t_14 - omega_x*six_r_S_dot_t_16
-        six_r_S_ddot_z = six_r_a_p_z + omega_x*six_r_S_dot_t_15 - omega_y*six_r_S_dot_t_14
+        six_r_S_ddot_x = t_ddot_x + B_p_xy*six_r_q_y + B_p_xz*six_r_q_z - W_p_t_4*six_r_q_x
+        six_r_S_ddot_y = t_ddot_y + B_p_yx*six_r_q_x + B_p_yz*six_r_q_z - W_p_t_5*six_r_q_y
+        six_r_S_ddot_z = t_ddot_z + B_p_zx*six_r_q_x + B_p_zy*six_r_q_y - W_p_t_6*six_r_q_z
         six_r_S_ddot_in_axes5_x = (
         axis_x_six_r_axes5_x*six_r_S_ddot_x + axis_x_six_r_axes5_y*six_r_S_ddot_y +
             axis_x_six_r_axes5_z*six_r_S_ddot_z
@@ -11147,201 +11439,224 @@ def _run_legs(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_ddot_z
         )
         # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4
-        six_r_zeta_2_in_axes3_x = (
-        six_r_W_2_in_axes2_yz*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y
+        six_r_zeta_2_in_axes2_y_2 = -six_r_omega_1_in_axes2_x_2*six_r_qd_1_t_18
+        six_r_zeta_2_in_axes3_x_2 = (
+        six_r_W_2_in_axes2_yz_2*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y_2
         )
-        six_r_zeta_2_in_axes3_y = (
-        six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
+        six_r_zeta_2_in_axes3_y_2 = (
+        six_r_W_2_in_axes2_yz_2*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y_2
         )
-        six_r_zeta_2_t = six_r_c_4*six_r_zeta_2_in_axes3_x
-        six_r_zeta_2_in_axes5_z = six_r_s_4*six_r_zeta_2_in_axes3_x
-        six_r_zeta_2_in_axes5_x = six_r_c_5*six_r_zeta_2_in_axes3_y - six_r_s_5*six_r_zeta_2_t
-        six_r_zeta_2_in_axes5_y = -six_r_c_5*six_r_zeta_2_t - six_r_s_5*six_r_zeta_2_in_axes3_y
+        six_r_zeta_2_t_2 = six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x_2
+        six_r_zeta_2_in_axes5_z_2 = six_r_h_4_t*six_r_zeta_2_in_axes3_x_2
+        six_r_zeta_2_in_axes5_x_2 = (
+        six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y_2 - six_r_J_5_t*six_r_zeta_2_t_2
+        )
+        six_r_zeta_2_in_axes5_y_2 = (
+        -six_r_J_5_t*six_r_zeta_2_in_axes3_y_2 - six_r_e_4_in_axes5_x*six_r_zeta_2_t_2
+        )
         # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        six_r_zeta_3_t = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3
-        six_r_zeta_3_in_axes3_y = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3
+        six_r_zeta_3_t_2 = six_r_omega_2_in_axes3_y_2*six_r_qd_1_t_17
+        six_r_zeta_3_in_axes3_y = six_r_omega_2_in_axes3_x_2*six_r_qd_1_t_17
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
-        six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x - six_r_zeta_3_t
-        six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y + six_r_zeta_3_in_axes3_y
-        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_c_4
-        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_s_4
+        six_r_beta_3_in_axes3_x_2 = six_r_zeta_2_in_axes3_x_2 - six_r_zeta_3_t_2
+        six_r_beta_3_in_axes3_y_2 = six_r_zeta_2_in_axes3_y_2 + six_r_zeta_3_in_axes3_y
+        six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*six_r_e_2_in_axes5_z
+        six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*six_r_h_4_t
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        six_r_zeta_4_in_axes4_x = -six_r_omega_3_in_axes4_y*six_r_qd_4_t
-        six_r_zeta_4_in_axes4_y = six_r_omega_3_in_axes4_x*six_r_qd_4_t
+        six_r_zeta_4_in_axes4_x_2 = -six_r_omega_3_in_axes4_y_2*six_r_qd_4_t_3
+        six_r_zeta_4_in_axes4_y = six_r_omega_3_in_axes4_x_2*six_r_qd_4_t_3
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
-        six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t
-        six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_zeta_4_in_axes4_y
-        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_c_5
-        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*six_r_s_5
-        six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*six_r_s_5
-        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_c_5 - six_r_beta_4_t_2
+        six_r_beta_4_in_axes4_x_2 = six_r_zeta_4_in_axes4_x_2 - six_r_beta_3_t_2
+        six_r_beta_4_in_axes4_y_2 = six_r_beta_3_in_axes4_y_2 + six_r_zeta_4_in_axes4_y
+        six_r_beta_4_t_3 = six_r_beta_3_in_axes3_y_2*six_r_e_4_in_axes5_x
+        six_r_beta_4_in_axes5_x_2 = six_r_beta_4_t_3 + six_r_J_5_t*six_r_beta_4_in_axes4_x_2
+        six_r_beta_4_t_4 = six_r_J_5_t*six_r_beta_3_in_axes3_y_2
+        six_r_beta_4_in_axes5_y_2 = (
+        six_r_beta_4_in_axes4_x_2*six_r_e_4_in_axes5_x - six_r_beta_4_t_4
+        )
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
-        six_r_zeta_5_t = six_r_omega_4_in_axes5_y*six_r_qd_5_t
-        six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x*six_r_qd_5_t
+        six_r_zeta_5_t_2 = six_r_omega_4_in_axes5_y_2*six_r_qd_5_t_2
+        six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x_2*six_r_qd_5_t_2
         # (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations
-        six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x - six_r_zeta_5_t
-        six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y + six_r_zeta_5_in_axes5_y
+        six_r_beta_5_in_axes5_x_2 = six_r_beta_4_in_axes5_x_2 - six_r_zeta_5_t_2
+        six_r_beta_5_in_axes5_y_2 = six_r_beta_4_in_axes5_y_2 + six_r_zeta_5_in_axes5_y
         # (six_r-bias) acceleration of the connection point at zero joint accelerations
         six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
-        six_r_bias_t = six_r_joint2_offset_x*six_r_s_2
-        six_r_bias_t_2 = six_r_bias_t*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
-        six_r_bias_t_3 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t*six_r_s_3
-        six_r_bias_t_4 = six_r_bias_t_2*six_r_c_4
-        six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_s_4
-        six_r_d_2_in_axes5_x = six_r_bias_t_3*six_r_c_5 - six_r_bias_t_4*six_r_s_5
-        six_r_d_2_in_axes5_y = -six_r_bias_t_3*six_r_s_5 - six_r_bias_t_4*six_r_c_5
-        six_r_bias_t_5 = six_r_joint3_offset_x*six_r_s_3
-        six_r_bias_t_6 = six_r_c_3*six_r_joint3_offset_x
-        six_r_bias_t_7 = six_r_bias_t_5*six_r_c_4
-        six_r_d_3_in_axes5_z = six_r_bias_t_5*six_r_s_4
-        six_r_d_3_in_axes5_x = six_r_bias_t_6*six_r_c_5 - six_r_bias_t_7*six_r_s_5
-        six_r_d_3_in_axes5_y = -six_r_bias_t_6*six_r_s_5 - six_r_bias_t_7*six_r_c_5
-        six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x
-        six_r_bias_t_8 = six_r_joint4_offset_x*six_r_s_5
-        six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x
-        six_r_bias_t_9 = six_r_joint5_offset_x*six_r_s_5
-        six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y
-        six_r_bias_t_11 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x
-        six_r_bias_t_12 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
-        six_r_bias_t_13 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
-        six_r_bias_t_14 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
-        six_r_bias_t_15 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
-        six_r_bias_t_16 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
-        six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
-        six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y
-        six_r_bias_in_axes5_x = (
-        six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y + six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
-            six_r_W_5_t_3*six_r_platform_joint_offset_x - six_r_bias_t_8*(six_r_W_3_in_axes5_xy -
-            six_r_beta_3_in_axes4_y) - six_r_bias_t_9*(six_r_W_4_in_axes5_xy -
-            six_r_beta_4_in_axes4_y) - six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
-            six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
-            six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) - six_r_d_5_in_axes5_x*(six_r_W_5_t
-            + six_r_bias_t_10)
+        six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_4 = six_r_bias_t_3*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
+        six_r_bias_t_5 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t_3*six_r_s_3
+        six_r_bias_t_6 = six_r_bias_t_4*six_r_e_2_in_axes5_z
+        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_h_4_t
+        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_6
+        six_r_d_2_in_axes5_y = -six_r_J_5_t*six_r_bias_t_5 - six_r_bias_t_6*six_r_e_4_in_axes5_x
+        six_r_bias_t_10 = six_r_joint3_offset_x*six_r_s_3
+        six_r_bias_t_11 = six_r_c_3*six_r_joint3_offset_x
+        six_r_bias_t_12 = six_r_bias_t_10*six_r_e_2_in_axes5_z
+        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_h_4_t
+        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_12
+        six_r_d_3_in_axes5_y = -six_r_J_5_t*six_r_bias_t_11 - six_r_bias_t_12*six_r_e_4_in_axes5_x
+        six_r_d_4_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint4_offset_x
+        six_r_bias_t_16 = six_r_J_5_t*six_r_joint4_offset_x
+        six_r_d_5_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint5_offset_x
+        six_r_bias_t_17 = six_r_J_5_t*six_r_joint5_offset_x
+        six_r_bias_t_19 = six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes4_y_2
+        six_r_bias_t_20 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_x_2
+        six_r_bias_t_21 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
+        six_r_bias_t_22 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
+        six_r_bias_t_23 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
+        six_r_bias_t_24 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_x_2
+        six_r_bias_t_25 = six_r_omega_2_in_axes5_y_2*six_r_omega_2_in_axes5_y_2
+        six_r_bias_t_26 = six_r_omega_2_in_axes5_z_2*six_r_omega_2_in_axes5_z_2
+        six_r_bias_t_27 = six_r_W_4_in_axes5_xy_2 + six_r_beta_4_in_axes4_y_2
+        six_r_bias_in_axes5_x_2 = (
+        six_r_W_1_in_axes5_xy_2*six_r_d_2_in_axes5_y +
+            six_r_W_1_in_axes5_xz_2*six_r_d_2_in_axes5_z +
+            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy_2 - six_r_zeta_2_in_axes5_z_2) +
+            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz_2 + six_r_zeta_2_in_axes5_y_2) -
+            six_r_W_5_t_6*six_r_platform_joint_offset_x - six_r_bias_t_16*(six_r_W_3_in_axes5_xy_2
+            - six_r_beta_3_in_axes4_y_2) - six_r_bias_t_17*(six_r_W_4_in_axes5_xy_2 -
+            six_r_beta_4_in_axes4_y_2) - six_r_d_2_in_axes5_x*(six_r_bias_t_22 + six_r_bias_t_23)
+            - six_r_d_3_in_axes5_x*(six_r_bias_t_25 + six_r_bias_t_26) -
+            six_r_d_4_in_axes5_x*(six_r_bias_t_19 +
+            six_r_omega_3_in_axes5_y_2*six_r_omega_3_in_axes5_y_2) -
+            six_r_d_5_in_axes5_x*(six_r_W_5_t_4 + six_r_bias_t_19)
         )
-        six_r_bias_in_axes5_y = (
-        six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z +
-            six_r_bias_t_18*six_r_d_5_in_axes5_x + six_r_bias_t_18*six_r_platform_joint_offset_x +
-            six_r_bias_t_8*(six_r_bias_t_10 + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
-            six_r_bias_t_9*(six_r_bias_t_10 + six_r_bias_t_11) +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17)
+        six_r_bias_in_axes5_y_2 = (
+        six_r_W_1_in_axes5_xy_2*six_r_d_2_in_axes5_x +
+            six_r_W_1_in_axes5_yz_2*six_r_d_2_in_axes5_z + six_r_bias_t_16*(six_r_bias_t_19 +
+            six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_x_2) +
+            six_r_bias_t_17*(six_r_bias_t_19 + six_r_bias_t_20) +
+            six_r_bias_t_27*six_r_d_5_in_axes5_x + six_r_bias_t_27*six_r_platform_joint_offset_x +
+            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy_2 + six_r_zeta_2_in_axes5_z_2) +
+            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz_2 - six_r_zeta_2_in_axes5_x_2) +
+            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy_2 + six_r_beta_3_in_axes4_y_2) -
+            six_r_d_2_in_axes5_y*(six_r_bias_t_21 + six_r_bias_t_23) -
+            six_r_d_3_in_axes5_y*(six_r_bias_t_24 + six_r_bias_t_26)
         )
-        six_r_bias_in_axes5_z = (
-        six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_c_5 +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
-            six_r_beta_5_in_axes5_y) - six_r_bias_t_8*(six_r_beta_4_t +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*six_r_s_5) -
-            six_r_bias_t_9*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
-            six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16)
+        six_r_bias_in_axes5_z_2 = (
+        six_r_W_1_in_axes5_xz_2*six_r_d_2_in_axes5_x +
+            six_r_W_1_in_axes5_yz_2*six_r_d_2_in_axes5_y +
+            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz_2 - six_r_zeta_2_in_axes5_y_2) +
+            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz_2 + six_r_zeta_2_in_axes5_x_2) +
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_4 + six_r_beta_3_t_2*six_r_e_4_in_axes5_x +
+            six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_x_2) +
+            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_x_2 -
+            six_r_beta_4_in_axes5_y_2) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz_2 -
+            six_r_beta_5_in_axes5_y_2) - six_r_bias_t_16*(six_r_beta_4_t_3 +
+            six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_y_2 - six_r_J_5_t*six_r_beta_3_t_2)
+            - six_r_bias_t_17*(six_r_beta_4_in_axes5_x_2 +
+            six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_y_2) -
+            six_r_d_2_in_axes5_z*(six_r_bias_t_21 + six_r_bias_t_22) -
+            six_r_d_3_in_axes5_z*(six_r_bias_t_24 + six_r_bias_t_25)
         )
         # (six_r-rel) acceleration of the connection point left to the joint accelerations
-        six_r_rel_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_bias_in_axes5_x
-        six_r_rel_in_axes5_y = six_r_S_ddot_in_axes5_y - six_r_bias_in_axes5_y
-        six_r_rel_in_axes5_z = six_r_S_ddot_in_axes5_z - six_r_bias_in_axes5_z
+        six_r_rel_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_bias_in_axes5_x_2
+        six_r_rel_in_axes5_y = six_r_S_ddot_in_axes5_y - six_r_bias_in_axes5_y_2
+        six_r_rel_in_axes5_z = six_r_S_ddot_in_axes5_z - six_r_bias_in_axes5_z_2
         # (six_r-nd_m1) rate of moment direction 1
         six_r_nd_m1_t = (
         six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_z -
             six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_x
         )
-        six_r_nd_m1_in_axes5_x = -six_r_nd_m1_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x
-        six_r_nd_m1_in_axes5_y = six_r_eta_2_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y
+        six_r_nd_m1_in_axes5_x_2 = (
+        -six_r_nd_m1_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x_2
+        )
+        six_r_nd_m1_in_axes5_y_2 = (
+        six_r_eta_2_t - six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y_2
+        )
         # (six_r-nu_1) bias of the angular acceleration along moment direction 1
-        six_r_nu_1_t = six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y
-        six_r_nu_1_t_2 = (
-        six_r_beta_5_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_beta_5_in_axes5_y*six_r_n_m1_in_axes5_y
+        six_r_nu_1_t_7 = six_r_end_p1_in_axes5_y*six_r_omega_4_in_axes5_y_2
+        six_r_nu_1_t_8 = (
+        six_r_beta_5_in_axes5_x_2*six_r_end_p1_in_axes5_y -
+            six_r_beta_5_in_axes5_y_2*six_r_n_m1_in_axes5_y
         )
-        six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - six_r_omega_in_axes5_x
-        six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - six_r_omega_in_axes5_y
-        six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - six_r_omega_in_axes5_z
-        six_r_nu_1_t_6 = (
-        six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 + six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
-            six_r_nu_1_t_5*(six_r_nu_1_t + six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x)
+        six_r_nu_1_t_9 = six_r_omega_4_in_axes5_x_2 - six_r_omega_in_axes5_x
+        six_r_nu_1_t_10 = six_r_omega_4_in_axes5_y_2 - six_r_omega_in_axes5_y
+        six_r_nu_1_t_11 = six_r_omega_5_in_axes5_z_2 - six_r_omega_in_axes5_z
+        six_r_nu_1_t_12 = (
+        six_r_nd_m1_in_axes5_x_2*six_r_nu_1_t_9 + six_r_nd_m1_in_axes5_y_2*six_r_nu_1_t_10 +
+            six_r_nu_1_t_11*(six_r_nu_1_t_7 + six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x_2)
         )
-        six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6
+        six_r_nu_1_2 = six_r_nu_1_t_8 - six_r_nu_1_t_12
         # (six_r-nd_m2) rate of moment direction 2
-        six_r_nd_m2_in_axes5_y = six_r_eta_1 - six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y
-        six_r_nd_m2_in_axes5_z = six_r_nd_m1_t - six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z
+        six_r_nd_m2_in_axes5_y_2 = (
+        six_r_eta_1_2 - six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y_2
+        )
+        six_r_nd_m2_in_axes5_z_2 = (
+        six_r_nd_m1_t - six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z_2
+        )
         # (six_r-nu_2) bias of the angular acceleration along moment direction 2
-        six_r_nu_2_t = (
-        six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_y*six_r_n_m2_in_axes5_z
+        six_r_nu_2_t_3 = (
+        six_r_beta_5_in_axes5_y_2*six_r_end_p1_in_axes5_z -
+            six_r_beta_4_in_axes4_y_2*six_r_end_p1_in_axes5_y
         )
-        six_r_nu_2_t_2 = (
-        six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 + six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
-            six_r_nu_1_t_3*(six_r_nu_1_t + six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z)
+        six_r_nu_2_t_4 = (
+        six_r_nd_m2_in_axes5_y_2*six_r_nu_1_t_10 + six_r_nd_m2_in_axes5_z_2*six_r_nu_1_t_11 +
+            six_r_nu_1_t_9*(six_r_nu_1_t_7 + six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z_2)
         )
-        six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2
+        six_r_nu_2_2 = six_r_nu_2_t_3 - six_r_nu_2_t_4
         # (six_r-etad_1) acceleration with which the joints turn along moment direction 1
         six_r_alpha_in_axes5_y = (
         alpha_x*axis_y_six_r_axes5_x + alpha_y*axis_y_six_r_axes5_y + alpha_z*axis_y_six_r_axes5_z
         )
         six_r_etad_1_t = (
-        six_r_n_m2_in_axes5_z*(alpha_x*axis_x_six_r_axes5_x + alpha_y*axis_x_six_r_axes5_y +
+        six_r_end_p1_in_axes5_y*(alpha_x*axis_x_six_r_axes5_x + alpha_y*axis_x_six_r_axes5_y +
             alpha_z*axis_x_six_r_axes5_z) - six_r_alpha_in_axes5_y*six_r_n_m1_in_axes5_y
         )
-        six_r_etad_1 = six_r_nu_1 - six_r_etad_1_t
+        six_r_etad_1 = six_r_nu_1_2 - six_r_etad_1_t
         # (six_r-etad_2) acceleration with which the joints turn along moment direction 2
         six_r_etad_2_t = (
         six_r_alpha_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_n_m2_in_axes5_z*(alpha_x*axis_z_six_r_axes5_x + alpha_y*axis_z_six_r_axes5_y +
+            six_r_end_p1_in_axes5_y*(alpha_x*axis_z_six_r_axes5_x + alpha_y*axis_z_six_r_axes5_y +
             alpha_z*axis_z_six_r_axes5_z)
         )
-        six_r_etad_2 = six_r_nu_2 - six_r_etad_2_t
+        six_r_etad_2 = six_r_nu_2_2 - six_r_etad_2_t
         # (six_r-qdd_1) acceleration of joint 1
         six_r_qdd_1_t = six_r_etad_1*six_r_size
         six_r_qdd_1_t_2 = six_r_etad_2*six_r_size
         six_r_qdd_1_t_3 = (
-        inv_six_r_w_1_t_79*(six_r_m1_w_2_t*six_r_qdd_1_t + six_r_m2_w_2_t*six_r_qdd_1_t_2 +
-            six_r_rel_in_axes5_x*six_r_w_2_t + six_r_rel_in_axes5_z*six_r_w_2_t_3 -
-            six_r_rel_in_axes5_y*six_r_w_2_t_2)
+        inv_six_r_w_1_t_75*(six_r_m1_w_1_t*six_r_qdd_1_t + six_r_m2_w_1_t*six_r_qdd_1_t_2 +
+            six_r_rel_in_axes5_x*six_r_w_1_t_76 + six_r_rel_in_axes5_z*six_r_w_1_t_78 -
+            six_r_rel_in_axes5_y*six_r_w_1_t_77)
         )
         six_r_qdd_1_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_qdd_1_t*six_r_w_1_t_71 + six_r_qdd_1_t_2*six_r_w_1_t_72 +
-            six_r_rel_in_axes5_x*six_r_w_1_t_68 + six_r_rel_in_axes5_z*six_r_w_1_t_70 -
-            six_r_qdd_1_t_3*six_r_w_1_t_73 - six_r_rel_in_axes5_y*six_r_w_1_t_69)
+        inv_six_r_w_1_t_63*(six_r_qdd_1_t*six_r_w_1_t_67 + six_r_qdd_1_t_2*six_r_w_1_t_68 +
+            six_r_rel_in_axes5_x*six_r_w_1_t_64 + six_r_rel_in_axes5_z*six_r_w_1_t_66 -
+            six_r_qdd_1_t_3*six_r_w_1_t_69 - six_r_rel_in_axes5_y*six_r_w_1_t_65)
         )
         six_r_qdd_1_t_5 = (
-        inv_six_r_w_1_t_49*(six_r_qdd_1_t_3*six_r_w_1_t_61 + six_r_qdd_1_t_4*six_r_w_1_t_55 +
-            six_r_rel_in_axes5_y*six_r_w_1_t_51 - six_r_qdd_1_t*six_r_w_1_t_53 -
-            six_r_qdd_1_t_2*six_r_w_1_t_54 - six_r_rel_in_axes5_x*six_r_w_1_t_50 -
-            six_r_rel_in_axes5_z*six_r_w_1_t_52)
+        inv_six_r_w_1_t_45*(six_r_qdd_1_t_3*six_r_w_1_t_57 + six_r_qdd_1_t_4*six_r_w_1_t_51 +
+            six_r_rel_in_axes5_y*six_r_w_1_t_47 - six_r_qdd_1_t*six_r_w_1_t_49 -
+            six_r_qdd_1_t_2*six_r_w_1_t_50 - six_r_rel_in_axes5_x*six_r_w_1_t_46 -
+            six_r_rel_in_axes5_z*six_r_w_1_t_48)
         )
         # (six_r-qdd_4) acceleration of joint 4
         six_r_qdd_4 = (
-        inv_six_r_w_1_t_28*(six_r_qdd_1_t*six_r_w_1_t_31 + six_r_qdd_1_t_2*six_r_w_1_t_32 +
-            six_r_qdd_1_t_3*six_r_w_1_t_44 + six_r_qdd_1_t_4*six_r_w_1_t_39 +
-            six_r_rel_in_axes5_z*six_r_w_1_t_30 - six_r_qdd_1_t_5*six_r_w_1_t_33 -
-            six_r_rel_in_axes5_y*six_r_w_1_t_29)
+        inv_six_r_w_1_t_24*(six_r_qdd_1_t*six_r_w_1_t_27 + six_r_qdd_1_t_2*six_r_w_1_t_28 +
+            six_r_qdd_1_t_3*six_r_w_1_t_40 + six_r_qdd_1_t_4*six_r_w_1_t_35 +
+            six_r_rel_in_axes5_z*six_r_w_1_t_26 - six_r_qdd_1_t_5*six_r_w_1_t_29 -
+            six_r_rel_in_axes5_y*six_r_w_1_t_25)
+        )
+        # (six_r-qdd_5) acceleration of joint 5
+        six_r_qdd_5 = (
+        inv_six_r_w_1_t_8*(six_r_qdd_1_t_2*six_r_w_1_t_10 + six_r_qdd_1_t_3*six_r_w_1_t_21 +
+            six_r_qdd_1_t_5*six_r_w_1_t_14 + six_r_rel_in_axes5_y*six_r_w_1_t_9 -
+            six_r_qdd_1_t_4*six_r_w_1_t_18 - six_r_qdd_4*six_r_w_1_t_11)
         )
         # (six_r-alpha_1) angular acceleration of link 1
         six_r_alpha_1_t = six_r_c_2*six_r_qdd_1_t_5
         six_r_alpha_1_in_axes2_y = six_r_qdd_1_t_5*six_r_s_2
         # (six_r-alpha_2) angular acceleration of link 2
-        six_r_alpha_2_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_t
-        six_r_alpha_2_in_axes2_y = six_r_alpha_1_in_axes2_y + six_r_zeta_2_in_axes2_y
+        six_r_alpha_2_in_axes2_x = six_r_W_2_in_axes2_yz_2 - six_r_alpha_1_t
+        six_r_alpha_2_in_axes2_y = six_r_alpha_1_in_axes2_y + six_r_zeta_2_in_axes2_y_2
         # (six_r-B_2) acceleration tensor of link 2
-        six_r_B_2_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_t_4
-        six_r_B_2_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_t_4
-        six_r_B_2_in_axes2_zx = -six_r_alpha_2_in_axes2_y - six_r_zeta_2_in_axes2_y
-        six_r_B_2_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_in_axes2_x
+        six_r_B_2_in_axes2_xy = six_r_W_2_in_axes2_xy_2 - six_r_qdd_1_t_4
+        six_r_B_2_in_axes2_yx = six_r_W_2_in_axes2_xy_2 + six_r_qdd_1_t_4
+        six_r_B_2_in_axes2_zx = -six_r_alpha_2_in_axes2_y - six_r_zeta_2_in_axes2_y_2
+        six_r_B_2_in_axes2_zy = six_r_W_2_in_axes2_yz_2 + six_r_alpha_2_in_axes2_x
         # (six_r-alpha_3) angular acceleration of link 3
         six_r_alpha_3_in_axes3_x = (
-        six_r_alpha_2_in_axes2_x*six_r_s_3 - six_r_zeta_3_t - six_r_alpha_2_in_axes2_y*six_r_c_3
+        six_r_alpha_2_in_axes2_x*six_r_s_3 - six_r_zeta_3_t_2 - six_r_alpha_2_in_axes2_y*six_r_c_3
         )
         six_r_alpha_3_in_axes3_y = (
         six_r_zeta_3_in_axes3_y + six_r_alpha_2_in_axes2_x*six_r_c_3 +
@@ -11349,53 +11664,49 @@ def _run_legs(m, X, V, A, q):
         )
         six_r_alpha_3_in_axes3_z = six_r_qdd_1_t_3 + six_r_qdd_1_t_4
         # (six_r-B_3) acceleration tensor of link 3
-        six_r_B_3_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_in_axes3_z
-        six_r_B_3_in_axes3_xz = six_r_W_3_in_axes3_xz + six_r_alpha_3_in_axes3_y
-        six_r_B_3_in_axes3_yx = six_r_W_3_in_axes3_xy + six_r_alpha_3_in_axes3_z
-        six_r_B_3_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_in_axes3_x
-        six_r_B_3_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_in_axes3_y
-        six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_in_axes3_x
+        six_r_B_3_in_axes3_xy = six_r_W_3_in_axes3_xy_2 - six_r_alpha_3_in_axes3_z
+        six_r_B_3_in_axes3_xz = six_r_W_3_in_axes3_xz_2 + six_r_alpha_3_in_axes3_y
+        six_r_B_3_in_axes3_yx = six_r_W_3_in_axes3_xy_2 + six_r_alpha_3_in_axes3_z
+        six_r_B_3_in_axes3_yz = six_r_W_3_in_axes3_yz_2 - six_r_alpha_3_in_axes3_x
+        six_r_B_3_in_axes3_zx = six_r_W_3_in_axes3_xz_2 - six_r_alpha_3_in_axes3_y
+        six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz_2 + six_r_alpha_3_in_axes3_x
         # (six_r-alpha_4) angular acceleration of link 4
         six_r_alpha_4_in_axes4_x = (
-        six_r_zeta_4_in_axes4_x + six_r_alpha_3_in_axes3_z*six_r_s_4 -
-            six_r_alpha_3_in_axes3_x*six_r_c_4
+        six_r_zeta_4_in_axes4_x_2 + six_r_alpha_3_in_axes3_z*six_r_h_4_t -
+            six_r_alpha_3_in_axes3_x*six_r_e_2_in_axes5_z
         )
         six_r_alpha_4_in_axes4_y = (
-        six_r_zeta_4_in_axes4_y + six_r_alpha_3_in_axes3_x*six_r_s_4 +
-            six_r_alpha_3_in_axes3_z*six_r_c_4
+        six_r_zeta_4_in_axes4_y + six_r_alpha_3_in_axes3_x*six_r_h_4_t +
+            six_r_alpha_3_in_axes3_z*six_r_e_2_in_axes5_z
         )
         six_r_alpha_4_in_axes4_z = six_r_alpha_3_in_axes3_y + six_r_qdd_4
         # (six_r-B_4) acceleration tensor of link 4
-        six_r_B_4_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_in_axes4_z
-        six_r_B_4_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_in_axes4_y
-        six_r_B_4_in_axes4_yx = six_r_W_4_in_axes4_xy + six_r_alpha_4_in_axes4_z
-        six_r_B_4_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_in_axes4_x
-        six_r_B_4_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_in_axes4_y
-        six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_in_axes4_x
+        six_r_B_4_in_axes4_xy = six_r_W_4_in_axes4_xy_2 - six_r_alpha_4_in_axes4_z
+        six_r_B_4_in_axes4_xz = six_r_W_4_in_axes4_xz_2 + six_r_alpha_4_in_axes4_y
+        six_r_B_4_in_axes4_yx = six_r_W_4_in_axes4_xy_2 + six_r_alpha_4_in_axes4_z
+        six_r_B_4_in_axes4_yz = six_r_W_4_in_axes4_yz_2 - six_r_alpha_4_in_axes4_x
+        six_r_B_4_in_axes4_zx = six_r_W_4_in_axes4_xz_2 - six_r_alpha_4_in_axes4_y
+        six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz_2 + six_r_alpha_4_in_axes4_x
         # (six_r-alpha_5) angular acceleration of link 5
         six_r_alpha_5_in_axes5_x = (
-        six_r_alpha_4_in_axes4_x*six_r_s_5 + six_r_alpha_4_in_axes4_z*six_r_c_5 - six_r_zeta_5_t
+        six_r_J_5_t*six_r_alpha_4_in_axes4_x + six_r_alpha_4_in_axes4_z*six_r_e_4_in_axes5_x -
+            six_r_zeta_5_t_2
         )
         six_r_alpha_5_in_axes5_y = (
-        six_r_zeta_5_in_axes5_y + six_r_alpha_4_in_axes4_x*six_r_c_5 -
-            six_r_alpha_4_in_axes4_z*six_r_s_5
+        six_r_zeta_5_in_axes5_y + six_r_alpha_4_in_axes4_x*six_r_e_4_in_axes5_x -
+            six_r_J_5_t*six_r_alpha_4_in_axes4_z
         )
-        six_r_alpha_5_in_axes5_z = (
-        six_r_alpha_4_in_axes4_y + inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*six_r_w_1_t_14 +
-            six_r_qdd_1_t_3*six_r_w_1_t_25 + six_r_qdd_1_t_5*six_r_w_1_t_18 +
-            six_r_rel_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_t_4*six_r_w_1_t_22 -
-            six_r_qdd_4*six_r_w_1_t_15)
-        )
+        six_r_alpha_5_in_axes5_z = six_r_alpha_4_in_axes4_y + six_r_qdd_5
         # (six_r-B_5) acceleration tensor of link 5
-        six_r_B_5_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_in_axes5_z
-        six_r_B_5_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_in_axes5_y
-        six_r_B_5_in_axes5_yx = six_r_W_4_in_axes5_xy + six_r_alpha_5_in_axes5_z
-        six_r_B_5_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_in_axes5_x
-        six_r_B_5_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_in_axes5_y
-        six_r_B_5_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_in_axes5_x
+        six_r_B_5_in_axes5_xy = six_r_W_4_in_axes5_xy_2 - six_r_alpha_5_in_axes5_z
+        six_r_B_5_in_axes5_xz = six_r_W_5_in_axes5_xz_2 + six_r_alpha_5_in_axes5_y
+        six_r_B_5_in_axes5_yx = six_r_W_4_in_axes5_xy_2 + six_r_alpha_5_in_axes5_z
+        six_r_B_5_in_axes5_yz = six_r_W_5_in_axes5_yz_2 - six_r_alpha_5_in_axes5_x
+        six_r_B_5_in_axes5_zx = six_r_W_5_in_axes5_xz_2 - six_r_alpha_5_in_axes5_y
+        six_r_B_5_in_axes5_zy = six_r_W_5_in_axes5_yz_2 + six_r_alpha_5_in_axes5_x
         # (six_r-a_o_3) acceleration of the origin of joint 3
-        six_r_a_o_3_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y
-        six_r_a_o_3_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4
+        six_r_a_o_3_t = six_r_omega_1_in_axes2_y_2*six_r_omega_1_in_axes2_y_2
+        six_r_a_o_3_t_2 = six_r_qd_1_t_18*six_r_qd_1_t_18
         six_r_a_o_3_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_t + six_r_a_o_3_t_2)
         six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*six_r_joint3_offset_x
         six_r_a_o_3_in_axes2_z = six_r_B_2_in_axes2_zx*six_r_joint3_offset_x
@@ -11409,7 +11720,7 @@ def _run_legs(m, X, V, A, q):
         six_r_a_o_4_in_axes3_x = (
         six_r_a_o_3_in_axes3_x + six_r_B_3_in_axes3_xy*six_r_joint4_offset_x
         )
-        six_r_a_o_4_in_axes3_y = six_r_a_o_3_in_axes3_y - six_r_W_3_t_3*six_r_joint4_offset_x
+        six_r_a_o_4_in_axes3_y = six_r_a_o_3_in_axes3_y - six_r_W_3_t_6*six_r_joint4_offset_x
         six_r_a_o_4_in_axes3_z = (
         six_r_a_o_3_in_axes2_z + six_r_B_3_in_axes3_zy*six_r_joint4_offset_x
         )
@@ -11424,37 +11735,43 @@ def _run_legs(m, X, V, A, q):
         six_r_acc_3_in_axes3_y = six_r_a_o_3_in_axes3_y - six_r_g_in_axes3_y
         six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - six_r_g_in_axes1_y
         # (six_r-f_3) inertia force of link 3 less its weight
-        six_r_f_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y
+        six_r_f_3_t = six_r_omega_2_in_axes3_y_2*six_r_omega_2_in_axes3_y_2
         six_r_f_3_in_axes3_x = (
         six_r_B_3_in_axes3_xy*six_r_h_3_in_spec3_x + six_r_B_3_in_axes3_xz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_in_axes3_x*six_r_link3_mass + six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
+            six_r_acc_3_in_axes3_x*six_r_link3_mass + six_r_h_3_in_spec3_y*(six_r_W_3_t_5 +
             six_r_f_3_t)
         )
         six_r_f_3_in_axes3_y = (
         six_r_B_3_in_axes3_yz*six_r_h_3_in_spec3_z + six_r_acc_3_in_axes3_y*six_r_link3_mass -
-            six_r_B_3_in_axes3_yx*six_r_h_3_in_spec3_y - six_r_W_3_t_3*six_r_h_3_in_spec3_x
+            six_r_B_3_in_axes3_yx*six_r_h_3_in_spec3_y - six_r_W_3_t_6*six_r_h_3_in_spec3_x
         )
         six_r_f_3_in_axes3_z = (
         six_r_B_3_in_axes3_zy*six_r_h_3_in_spec3_x + six_r_acc_3_in_axes3_z*six_r_link3_mass -
-            six_r_B_3_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
+            six_r_B_3_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t_4 +
             six_r_f_3_t)
         )
         # (six_r-acc_4) acceleration of the reference point of link 4, less gravity
+        six_r_g_in_axes4_x = (
+        six_r_g_in_axes1_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_g_in_axes3_x
+        )
+        six_r_g_in_axes4_y = (
+        six_r_e_2_in_axes5_z*six_r_g_in_axes1_y + six_r_g_in_axes3_x*six_r_h_4_t
+        )
         six_r_acc_4_in_axes4_x = (
-        six_r_a_o_4_in_axes3_z*six_r_s_4 + six_r_c_4*six_r_g_in_axes3_x -
-            six_r_a_o_4_in_axes3_x*six_r_c_4 - six_r_g_in_axes1_y*six_r_s_4
+        six_r_a_o_4_in_axes3_z*six_r_h_4_t - six_r_g_in_axes4_x -
+            six_r_a_o_4_in_axes3_x*six_r_e_2_in_axes5_z
         )
         six_r_acc_4_in_axes4_y = (
-        six_r_a_o_4_in_axes3_x*six_r_s_4 + six_r_a_o_4_in_axes3_z*six_r_c_4 -
-            six_r_c_4*six_r_g_in_axes1_y - six_r_g_in_axes3_x*six_r_s_4
+        six_r_a_o_4_in_axes3_x*six_r_h_4_t + six_r_a_o_4_in_axes3_z*six_r_e_2_in_axes5_z -
+            six_r_g_in_axes4_y
         )
         six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_y - six_r_g_in_axes3_y
         # (six_r-f_4) inertia force of link 4 less its weight
-        six_r_f_4_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x
-        six_r_f_4_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z
+        six_r_f_4_t = six_r_omega_3_in_axes4_x_2*six_r_omega_3_in_axes4_x_2
+        six_r_f_4_t_2 = six_r_omega_4_in_axes4_z_2*six_r_omega_4_in_axes4_z_2
         six_r_f_4_in_axes4_x = (
         six_r_B_4_in_axes4_xy*six_r_h_4_in_spec4_z + six_r_B_4_in_axes4_xz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_in_axes4_x*six_r_link4_mass - six_r_h_4_in_spec4_y*(six_r_bias_t_10 +
+            six_r_acc_4_in_axes4_x*six_r_link4_mass - six_r_h_4_in_spec4_y*(six_r_bias_t_19 +
             six_r_f_4_t_2)
         )
         six_r_f_4_in_axes4_y = (
@@ -11464,29 +11781,36 @@ def _run_legs(m, X, V, A, q):
         )
         six_r_f_4_in_axes4_z = (
         six_r_B_4_in_axes4_zx*six_r_h_4_in_spec4_y + six_r_B_4_in_axes4_zy*six_r_h_4_in_spec4_z +
-            six_r_acc_4_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t_10 +
+            six_r_acc_4_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t_19 +
             six_r_f_4_t)
         )
-        six_r_f_4_in_axes3_x = six_r_f_4_in_axes4_y*six_r_s_4 - six_r_c_4*six_r_f_4_in_axes4_x
-        six_r_f_4_in_axes3_z = six_r_c_4*six_r_f_4_in_axes4_y + six_r_f_4_in_axes4_x*six_r_s_4
+        six_r_f_4_in_axes3_x = (
+        six_r_f_4_in_axes4_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_f_4_in_axes4_x
+        )
+        six_r_f_4_in_axes3_z = (
+        six_r_e_2_in_axes5_z*six_r_f_4_in_axes4_y + six_r_f_4_in_axes4_x*six_r_h_4_t
+        )
         # (six_r-acc_5) acceleration of the reference point of link 5, less gravity
-        six_r_acc_5_in_axes5_x = (
-        six_r_S_ddot_in_axes5_x - axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y
-            - axis_x_six_r_axes5_z*gravity_z
+        six_r_g_in_axes5_x = (
+        axis_x_six_r_axes5_x*gravity_x + axis_x_six_r_axes5_y*gravity_y +
+            axis_x_six_r_axes5_z*gravity_z
         )
-        six_r_acc_5_in_axes5_y = (
-        six_r_S_ddot_in_axes5_y - axis_y_six_r_axes5_x*gravity_x - axis_y_six_r_axes5_y*gravity_y
-            - axis_y_six_r_axes5_z*gravity_z
+        six_r_g_in_axes5_y = (
+        axis_y_six_r_axes5_x*gravity_x + axis_y_six_r_axes5_y*gravity_y +
+            axis_y_six_r_axes5_z*gravity_z
         )
-        six_r_acc_5_in_axes5_z = (
-        six_r_S_ddot_in_axes5_z - axis_z_six_r_axes5_x*gravity_x - axis_z_six_r_axes5_y*gravity_y
-            - axis_z_six_r_axes5_z*gravity_z
+        six_r_g_in_axes5_z = (
+        axis_z_six_r_axes5_x*gravity_x + axis_z_six_r_axes5_y*gravity_y +
+            axis_z_six_r_axes5_z*gravity_z
         )
+        six_r_acc_5_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_g_in_axes5_x
+        six_r_acc_5_in_axes5_y = six_r_S_ddot_in_axes5_y - six_r_g_in_axes5_y
+        six_r_acc_5_in_axes5_z = six_r_S_ddot_in_axes5_z - six_r_g_in_axes5_z
         # (six_r-mu_5) inertia moment of the links that turn with link 5, about their reference points
         six_r_mu_5_in_axes5_x = (
         six_r_B_5_in_axes5_yx*six_r_J_5_in_spec5_xz +
-            six_r_B_5_in_axes5_zy*six_r_Sigma_5_in_axes5_yy + six_r_J_5_in_spec5_yz*(six_r_W_5_t -
-            six_r_W_5_t_2) + six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_y -
+            six_r_B_5_in_axes5_zy*six_r_Sigma_5_in_axes5_yy + six_r_J_5_in_spec5_yz*(six_r_W_5_t_4
+            - six_r_W_5_t_5) + six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_y -
             six_r_B_5_in_axes5_yz*six_r_Sigma_5_in_axes5_zz -
             six_r_B_5_in_axes5_zx*six_r_J_5_in_spec5_xy -
             six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_z
@@ -11497,13 +11821,13 @@ def _run_legs(m, X, V, A, q):
             six_r_acc_5_in_axes5_x*six_r_h_5_in_spec5_z -
             six_r_B_5_in_axes5_xy*six_r_J_5_in_spec5_yz -
             six_r_B_5_in_axes5_zx*six_r_Sigma_5_in_axes5_xx -
-            six_r_J_5_in_spec5_xz*(six_r_bias_t_11 - six_r_W_5_t_2) -
+            six_r_J_5_in_spec5_xz*(six_r_bias_t_20 - six_r_W_5_t_5) -
             six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_x
         )
         six_r_mu_5_in_axes5_z = (
         six_r_B_5_in_axes5_xz*six_r_J_5_in_spec5_yz +
             six_r_B_5_in_axes5_yx*six_r_Sigma_5_in_axes5_xx +
-            six_r_J_5_in_spec5_xy*(six_r_bias_t_11 - six_r_W_5_t) +
+            six_r_J_5_in_spec5_xy*(six_r_bias_t_20 - six_r_W_5_t_4) +
             six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_x -
             six_r_B_5_in_axes5_xy*six_r_Sigma_5_in_axes5_yy -
             six_r_B_5_in_axes5_yz*six_r_J_5_in_spec5_xz -
@@ -11513,7 +11837,7 @@ def _run_legs(m, X, V, A, q):
         six_r_mu_4_in_axes4_x = (
         six_r_B_4_in_axes4_yx*six_r_J_4_in_spec4_xy +
             six_r_B_4_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
-            six_r_J_4_in_spec4_xz*(six_r_bias_t_10 - six_r_f_4_t_2) +
+            six_r_J_4_in_spec4_xz*(six_r_bias_t_19 - six_r_f_4_t_2) +
             six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_z -
             six_r_B_4_in_axes4_yz*six_r_Sigma_4_in_axes4_zz -
             six_r_B_4_in_axes4_zx*six_r_J_4_in_spec4_yz -
@@ -11530,31 +11854,33 @@ def _run_legs(m, X, V, A, q):
         six_r_mu_4_in_axes4_z = (
         six_r_B_4_in_axes4_xz*six_r_J_4_in_spec4_xz +
             six_r_B_4_in_axes4_yx*six_r_Sigma_4_in_axes4_xx + six_r_J_4_in_spec4_yz*(six_r_f_4_t -
-            six_r_bias_t_10) + six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_y -
+            six_r_bias_t_19) + six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_y -
             six_r_B_4_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
             six_r_B_4_in_axes4_yz*six_r_J_4_in_spec4_xy -
             six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_z
         )
         # (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
         six_r_N_4_in_axes4_x = (
-        six_r_mu_4_in_axes4_x + six_r_c_5*six_r_mu_5_in_axes5_y + six_r_mu_5_in_axes5_x*six_r_s_5
+        six_r_mu_4_in_axes4_x + six_r_J_5_t*six_r_mu_5_in_axes5_x +
+            six_r_e_4_in_axes5_x*six_r_mu_5_in_axes5_y
         )
         six_r_N_4_in_axes4_y = six_r_mu_4_in_axes4_y + six_r_mu_5_in_axes5_z
         six_r_N_4_in_axes4_z = (
-        six_r_mu_4_in_axes4_z + six_r_c_5*six_r_mu_5_in_axes5_x - six_r_mu_5_in_axes5_y*six_r_s_5
+        six_r_mu_4_in_axes4_z + six_r_e_4_in_axes5_x*six_r_mu_5_in_axes5_x -
+            six_r_J_5_t*six_r_mu_5_in_axes5_y
         )
         # (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points
         six_r_mu_3_in_axes3_x = (
         six_r_B_3_in_axes3_zx*six_r_J_3_in_spec3_xy +
             six_r_B_3_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_xz*(six_r_f_3_t -
-            six_r_W_3_t_2) + six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_x -
+            six_r_W_3_t_5) + six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_x -
             six_r_B_3_in_axes3_yx*six_r_J_3_in_spec3_yz -
             six_r_B_3_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
             six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_z
         )
         six_r_mu_3_in_axes3_y = (
-        six_r_B_3_in_axes3_xz*six_r_Sigma_3_in_axes3_zz + six_r_J_3_in_spec3_yz*(six_r_W_3_t -
-            six_r_W_3_t_2) + six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_z +
+        six_r_B_3_in_axes3_xz*six_r_Sigma_3_in_axes3_zz + six_r_J_3_in_spec3_yz*(six_r_W_3_t_4 -
+            six_r_W_3_t_5) + six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_z +
             six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_y -
             six_r_B_3_in_axes3_xy*six_r_J_3_in_spec3_xz -
             six_r_B_3_in_axes3_zx*six_r_Sigma_3_in_axes3_xx -
@@ -11564,47 +11890,53 @@ def _run_legs(m, X, V, A, q):
         six_r_B_3_in_axes3_xz*six_r_J_3_in_spec3_xz +
             six_r_B_3_in_axes3_yx*six_r_Sigma_3_in_axes3_xx +
             six_r_B_3_in_axes3_yz*six_r_J_3_in_spec3_yz -
-            six_r_B_3_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t -
-            six_r_f_3_t) - six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_x -
+            six_r_B_3_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t_4
+            - six_r_f_3_t) - six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_x -
             six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_y
         )
         # (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
         six_r_N_3_in_axes3_x = (
-        six_r_mu_3_in_axes3_x + six_r_N_4_in_axes4_y*six_r_s_4 +
-            six_r_f_4_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_in_axes4_x*six_r_c_4
+        six_r_mu_3_in_axes3_x + six_r_N_4_in_axes4_y*six_r_h_4_t +
+            six_r_f_4_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_in_axes4_x*six_r_e_2_in_axes5_z
         )
         six_r_N_3_in_axes3_y = six_r_N_4_in_axes4_z + six_r_mu_3_in_axes3_y
         six_r_N_3_in_axes3_z = (
-        six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_s_4 + six_r_N_4_in_axes4_y*six_r_c_4 -
-            six_r_f_4_in_axes3_x*six_r_joint4_offset_x
+        six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_h_4_t +
+            six_r_N_4_in_axes4_y*six_r_e_2_in_axes5_z - six_r_f_4_in_axes3_x*six_r_joint4_offset_x
         )
         # (six_r-T_3) inertia force of the links from 3 outwards, the last link left out
         six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes3_x
         six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes4_z
         six_r_T_3_in_axes3_z = six_r_f_3_in_axes3_z + six_r_f_4_in_axes3_z
         # (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        six_r_mu_2_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x
+        six_r_mu_2_t = (
+        six_r_g_in_axes1_y*six_r_h_2_in_spec2_y - six_r_g_in_axes2_y*six_r_h_2_in_spec2_z
+        )
+        six_r_mu_2_t_2 = (
+        six_r_g_in_axes2_x*six_r_h_2_in_spec2_z - six_r_g_in_axes1_y*six_r_h_2_in_spec2_x
+        )
+        six_r_mu_2_t_3 = (
+        six_r_g_in_axes2_y*six_r_h_2_in_spec2_x - six_r_g_in_axes2_x*six_r_h_2_in_spec2_y
+        )
+        six_r_mu_2_t_4 = six_r_omega_1_in_axes2_x_2*six_r_omega_1_in_axes2_x_2
         six_r_mu_2_in_axes2_x = (
         six_r_B_2_in_axes2_yx*six_r_J_2_in_spec2_xz +
             six_r_B_2_in_axes2_zy*six_r_Sigma_2_in_axes2_yy + six_r_J_2_in_spec2_yz*(six_r_a_o_3_t
-            - six_r_a_o_3_t_2) + six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
-            six_r_B_2_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_t - six_r_g_in_axes1_y*six_r_h_2_in_spec2_y
+            - six_r_a_o_3_t_2) - six_r_mu_2_t - six_r_B_2_in_axes2_zx*six_r_J_2_in_spec2_xy -
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_t
         )
         six_r_mu_2_in_axes2_y = (
         six_r_B_2_in_axes2_zy*six_r_J_2_in_spec2_xy +
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_in_axes2_y +
-            six_r_g_in_axes1_y*six_r_h_2_in_spec2_x - six_r_B_2_in_axes2_xy*six_r_J_2_in_spec2_yz
-            - six_r_B_2_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
-            six_r_J_2_in_spec2_xz*(six_r_mu_2_t - six_r_a_o_3_t_2) -
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_z
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_in_axes2_y - six_r_mu_2_t_2 -
+            six_r_B_2_in_axes2_xy*six_r_J_2_in_spec2_yz -
+            six_r_B_2_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
+            six_r_J_2_in_spec2_xz*(six_r_mu_2_t_4 - six_r_a_o_3_t_2)
         )
         six_r_mu_2_in_axes2_z = (
-        six_r_B_2_in_axes2_yx*six_r_Sigma_2_in_axes2_xx + six_r_J_2_in_spec2_xy*(six_r_mu_2_t -
-            six_r_a_o_3_t) + six_r_J_2_in_spec2_yz*six_r_alpha_1_in_axes2_y +
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
+        six_r_B_2_in_axes2_yx*six_r_Sigma_2_in_axes2_xx + six_r_J_2_in_spec2_xy*(six_r_mu_2_t_4 -
+            six_r_a_o_3_t) + six_r_J_2_in_spec2_yz*six_r_alpha_1_in_axes2_y - six_r_mu_2_t_3 -
             six_r_B_2_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
-            six_r_J_2_in_spec2_xz*six_r_alpha_1_t - six_r_g_in_axes2_y*six_r_h_2_in_spec2_x
+            six_r_J_2_in_spec2_xz*six_r_alpha_1_t
         )
         # (six_r-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         six_r_N_2_in_axes2_x = (
@@ -11620,66 +11952,66 @@ def _run_legs(m, X, V, A, q):
             six_r_T_3_in_axes3_y*six_r_s_3)
         )
         # (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        six_r_mu_1_in_axes1_z = (
-        six_r_g_in_axes1_x*six_r_h_1_in_spec1_z - six_r_J_1_in_spec1_xx*six_r_qdd_1_t_5 -
-            six_r_g_in_axes1_y*six_r_h_1_in_spec1_y
+        six_r_mu_1_t = (
+        six_r_g_in_axes1_y*six_r_h_1_in_spec1_y - six_r_g_in_axes1_x*six_r_h_1_in_spec1_z
         )
+        six_r_mu_1_in_axes1_z = -six_r_mu_1_t - six_r_J_1_in_spec1_xx*six_r_qdd_1_t_5
         # (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         six_r_N_1_in_axes1_z = (
         six_r_mu_1_in_axes1_z + six_r_N_2_in_axes2_x*six_r_c_2 - six_r_N_2_in_axes2_y*six_r_s_2
         )
         # (six_r-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        six_r_G_m1_t = inv_six_r_w_1_t_12*six_r_mu_5_in_axes5_z
-        six_r_G_m1_t_2 = inv_six_r_w_1_t_28*(six_r_G_m1_t*six_r_w_1_t_15 - six_r_N_4_in_axes4_z)
+        six_r_G_m1_t = inv_six_r_w_1_t_8*six_r_mu_5_in_axes5_z
+        six_r_G_m1_t_2 = inv_six_r_w_1_t_24*(six_r_G_m1_t*six_r_w_1_t_11 - six_r_N_4_in_axes4_z)
         six_r_G_m1_t_3 = (
-        inv_six_r_w_1_t_49*(six_r_G_m1_t*six_r_w_1_t_18 + six_r_G_m1_t_2*six_r_w_1_t_33 -
+        inv_six_r_w_1_t_45*(six_r_G_m1_t*six_r_w_1_t_14 + six_r_G_m1_t_2*six_r_w_1_t_29 -
             six_r_N_1_in_axes1_z)
         )
         six_r_G_m1_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_G_m1_t*six_r_w_1_t_22 + six_r_G_m1_t_2*six_r_w_1_t_39 -
-            six_r_N_2_in_axes2_z - six_r_G_m1_t_3*six_r_w_1_t_55)
+        inv_six_r_w_1_t_63*(six_r_G_m1_t*six_r_w_1_t_18 + six_r_G_m1_t_2*six_r_w_1_t_35 -
+            six_r_N_2_in_axes2_z - six_r_G_m1_t_3*six_r_w_1_t_51)
         )
         six_r_G_m1_t_5 = (
-        inv_six_r_w_1_t_79*(six_r_N_3_in_axes3_z + six_r_G_m1_t*six_r_w_1_t_25 +
-            six_r_G_m1_t_3*six_r_w_1_t_61 + six_r_G_m1_t_4*six_r_w_1_t_73 -
-            six_r_G_m1_t_2*six_r_w_1_t_44)
+        inv_six_r_w_1_t_75*(six_r_N_3_in_axes3_z + six_r_G_m1_t*six_r_w_1_t_21 +
+            six_r_G_m1_t_3*six_r_w_1_t_57 + six_r_G_m1_t_4*six_r_w_1_t_69 -
+            six_r_G_m1_t_2*six_r_w_1_t_40)
         )
         six_r_G_m1_t_6 = (
-        six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_31 + six_r_G_m1_t_3*six_r_w_1_t_53 +
-            six_r_G_m1_t_4*six_r_w_1_t_71 - six_r_G_m1_t_5*six_r_m1_w_2_t)
+        six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_27 + six_r_G_m1_t_3*six_r_w_1_t_49 +
+            six_r_G_m1_t_4*six_r_w_1_t_67 - six_r_G_m1_t_5*six_r_m1_w_1_t)
         )
         # (six_r-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m2_t = (
-        six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_32 + six_r_G_m1_t_3*six_r_w_1_t_54 +
-            six_r_G_m1_t_4*six_r_w_1_t_72 - six_r_G_m1_t*six_r_w_1_t_14 -
-            six_r_G_m1_t_5*six_r_m2_w_2_t)
+        six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_28 + six_r_G_m1_t_3*six_r_w_1_t_50 +
+            six_r_G_m1_t_4*six_r_w_1_t_68 - six_r_G_m1_t*six_r_w_1_t_10 -
+            six_r_G_m1_t_5*six_r_m2_w_1_t)
         )
         # (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        six_r_G_m_in_axes5_x = six_r_G_m1_t_6*six_r_n_m2_in_axes5_z
+        six_r_G_m_in_axes5_x = six_r_G_m1_t_6*six_r_end_p1_in_axes5_y
         six_r_G_m_in_axes5_y = (
         six_r_G_m2_t*six_r_end_p1_in_axes5_z - six_r_G_m1_t_6*six_r_n_m1_in_axes5_y
         )
         # (six_r-c) leg force on the platform without actuation and without the mass at the connection point
         six_r_c_in_axes5_x = (
-        six_r_G_m1_t_3*six_r_w_1_t_50 + six_r_G_m1_t_4*six_r_w_1_t_68 +
-            six_r_W_5_t_3*six_r_h_5_in_spec5_x - six_r_B_5_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_t_5*six_r_w_2_t
+        six_r_G_m1_t_3*six_r_w_1_t_46 + six_r_G_m1_t_4*six_r_w_1_t_64 +
+            six_r_W_5_t_6*six_r_h_5_in_spec5_x - six_r_B_5_in_axes5_xy*six_r_h_5_in_spec5_y -
+            six_r_B_5_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_t_5*six_r_w_1_t_76
         )
         six_r_c_in_axes5_y = (
-        six_r_G_m1_t_5*six_r_w_2_t_2 + six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_11) -
+        six_r_G_m1_t_5*six_r_w_1_t_77 + six_r_h_5_in_spec5_y*(six_r_W_5_t_5 + six_r_bias_t_20) -
             six_r_B_5_in_axes5_yx*six_r_h_5_in_spec5_x -
-            six_r_B_5_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_t*six_r_w_1_t_13 -
-            six_r_G_m1_t_2*six_r_w_1_t_29 - six_r_G_m1_t_3*six_r_w_1_t_51 -
-            six_r_G_m1_t_4*six_r_w_1_t_69
+            six_r_B_5_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_t*six_r_w_1_t_9 -
+            six_r_G_m1_t_2*six_r_w_1_t_25 - six_r_G_m1_t_3*six_r_w_1_t_47 -
+            six_r_G_m1_t_4*six_r_w_1_t_65
         )
         six_r_c_in_axes5_z = (
-        six_r_G_m1_t_2*six_r_w_1_t_30 + six_r_G_m1_t_3*six_r_w_1_t_52 +
-            six_r_G_m1_t_4*six_r_w_1_t_70 + six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_11) -
-            six_r_B_5_in_axes5_zx*six_r_h_5_in_spec5_x -
-            six_r_B_5_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_t_5*six_r_w_2_t_3
+        six_r_G_m1_t_2*six_r_w_1_t_26 + six_r_G_m1_t_3*six_r_w_1_t_48 +
+            six_r_G_m1_t_4*six_r_w_1_t_66 + six_r_h_5_in_spec5_z*(six_r_W_5_t_4 + six_r_bias_t_20)
+            - six_r_B_5_in_axes5_zx*six_r_h_5_in_spec5_x -
+            six_r_B_5_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_t_5*six_r_w_1_t_78
         )
         # (six_r-c_m) moment of the leg on the platform without actuation
-        six_r_c_m_in_axes5_z = six_r_G_m2_t*six_r_n_m2_in_axes5_z
+        six_r_c_m_in_axes5_z = six_r_G_m2_t*six_r_end_p1_in_axes5_y
         six_r_c_m_x = (
         axis_z_six_r_axes5_x*six_r_c_m_in_axes5_z - axis_x_six_r_axes5_x*six_r_G_m_in_axes5_x -
             axis_y_six_r_axes5_x*six_r_G_m_in_axes5_y
@@ -11712,9 +12044,9 @@ def _run_legs(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_c_true_in_axes5_z
         )
         ok = (
-        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
-            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
+        ok & (abs(six_r_w_1_t_8) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_24) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_45) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_63) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_75) > _TOLERANCE * six_r_size)
         )
         # (six_r-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_six_r[0][leg]] = six_r_c_true_x
@@ -11729,9 +12061,9 @@ def _run_legs(m, X, V, A, q):
         out_actuator[_actuator_six_r[1][leg]] = six_r_w_2_y
         out_actuator[_actuator_six_r[2][leg]] = six_r_w_2_z
         # (six_r-o_2) moment part of reciprocal wrench 2
-        out_actuator[_actuator_six_r[3][leg]] = six_r_o_2_x
-        out_actuator[_actuator_six_r[4][leg]] = six_r_o_2_y
-        out_actuator[_actuator_six_r[5][leg]] = six_r_o_2_z
+        out_actuator[_actuator_six_r[3][leg]] = six_r_o_2_x_2
+        out_actuator[_actuator_six_r[4][leg]] = six_r_o_2_y_2
+        out_actuator[_actuator_six_r[5][leg]] = six_r_o_2_z_2
     return ok, (out_leg_force, out_actuator,)
 
 
@@ -11781,12 +12113,14 @@ def _run_potential(m, X, q):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
+    gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
+        m_star*t_z)
     )
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
@@ -11809,9 +12143,15 @@ def _run_potential(m, X, q):
         # (six_r-h_4) first moment of link 4 about the origin of link 4
         six_r_e_2_in_axes5_z = cos(six_r_q_4)
         six_r_h_4_t = sin(six_r_q_4)
+        six_r_h_4_in_spec2_z = (
+        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z + six_r_h_4_in_spec4_y*six_r_h_4_t
+        )
         six_r_h_4_in_spec3_y = (
         six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*six_r_h_4_t
         )
+        # (six_r-J_5) inertia tensor of link 5 about the connection point
+        six_r_e_4_in_axes5_x = cos(six_r_q_5)
+        six_r_J_5_t = sin(six_r_q_5)
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
         six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
@@ -11824,58 +12164,62 @@ def _run_potential(m, X, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
-        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = cos(six_r_q_5)
-        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = sin(six_r_q_5)
-        # (potential) potential energy
-        six_r_potential_t_4 = six_r_c_5*six_r_h_5_in_spec5_y + six_r_h_5_in_spec5_x*six_r_s_5
+        # (six_r-bias) acceleration of the connection point at zero joint accelerations
         six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
-        six_r_potential_t_5 = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
+        # (six_r-acc_3) acceleration of the reference point of link 3, less gravity
         six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1
-        six_r_potential_t_6 = six_r_c_1*six_r_potential_t + six_r_potential_t_2*six_r_s_1
-        six_r_b_in_spec2_z = six_r_c_1*six_r_potential_t_2 - six_r_potential_t*six_r_s_1
-        six_r_b_in_spec2_x = six_r_c_2*six_r_potential_t_3 + six_r_potential_t_6*six_r_s_2
-        six_r_b_in_spec2_y = six_r_c_2*six_r_potential_t_6 - six_r_potential_t_3*six_r_s_2
-        six_r_potential_t_7 = six_r_b_in_spec2_y - six_r_potential_t_5
-        six_r_potential_t_8 = six_r_c_5*six_r_h_5_in_spec5_x - six_r_h_5_in_spec5_y*six_r_s_5
-        six_r_potential_t_9 = (
-        six_r_e_2_in_axes5_z*six_r_potential_t_4 - six_r_h_4_t*six_r_h_5_in_spec5_z
+        six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1
+        six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_z + six_r_g_in_axes1_x*six_r_s_2
+        six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_x - six_r_g_in_axes1_z*six_r_s_2
+        # (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        six_r_d_Gamma_4_t = (
+        six_r_J_5_t*six_r_h_5_in_spec5_x + six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y
         )
-        six_r_potential_t_10 = (
+        # (potential) potential energy
+        six_r_potential_t_4 = six_r_c_1*six_r_potential_t + six_r_potential_t_2*six_r_s_1
+        six_r_b_in_spec2_z = six_r_c_1*six_r_potential_t_2 - six_r_potential_t*six_r_s_1
+        six_r_b_in_spec2_x = six_r_c_2*six_r_potential_t_3 + six_r_potential_t_4*six_r_s_2
+        six_r_b_in_spec2_y = six_r_c_2*six_r_potential_t_4 - six_r_potential_t_3*six_r_s_2
+        six_r_potential_t_5 = six_r_b_in_spec2_y - six_r_bias_t_3
+        six_r_potential_t_6 = (
+        six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_x - six_r_J_5_t*six_r_h_5_in_spec5_y
+        )
+        six_r_potential_t_7 = (
+        six_r_d_Gamma_4_t*six_r_e_2_in_axes5_z - six_r_h_4_t*six_r_h_5_in_spec5_z
+        )
+        six_r_potential_t_8 = (
         six_r_h_2_in_spec2_x + six_r_b_in_spec2_x*six_r_link1_mass +
             six_r_c_2*six_r_h_1_in_spec1_x + six_r_c_3*six_r_h_3_in_spec3_x +
-            six_r_c_3*six_r_h_4_in_spec4_x + six_r_c_3*six_r_potential_t_8 +
+            six_r_c_3*six_r_h_4_in_spec4_x + six_r_c_3*six_r_potential_t_6 +
             six_r_h_1_in_spec1_y*six_r_s_2 + six_r_link2_mass*(six_r_b_in_spec2_x +
             six_r_d_2_in_spec2_x) + six_r_link3_mass*(six_r_b_in_spec2_x + six_r_d_2_in_spec2_x +
             six_r_joint3_offset_x) + six_r_link4_mass*(six_r_b_in_spec2_x + six_r_d_2_in_spec2_x +
             six_r_joint3_offset_x + six_r_c_3*six_r_joint4_offset_x) -
             six_r_h_3_in_spec3_y*six_r_s_3 - six_r_h_4_in_spec3_y*six_r_s_3 -
-            six_r_potential_t_9*six_r_s_3
+            six_r_potential_t_7*six_r_s_3
         )
-        six_r_potential_t_11 = (
+        six_r_potential_t_9 = (
         six_r_h_2_in_spec2_y + six_r_b_in_spec2_y*six_r_link1_mass +
             six_r_c_2*six_r_h_1_in_spec1_y + six_r_c_3*six_r_h_3_in_spec3_y +
-            six_r_c_3*six_r_h_4_in_spec3_y + six_r_c_3*six_r_potential_t_9 +
+            six_r_c_3*six_r_h_4_in_spec3_y + six_r_c_3*six_r_potential_t_7 +
             six_r_h_3_in_spec3_x*six_r_s_3 + six_r_h_4_in_spec4_x*six_r_s_3 +
-            six_r_link2_mass*six_r_potential_t_7 + six_r_link3_mass*six_r_potential_t_7 +
+            six_r_link2_mass*six_r_potential_t_5 + six_r_link3_mass*six_r_potential_t_5 +
             six_r_link4_mass*(six_r_b_in_spec2_y + six_r_joint4_offset_x*six_r_s_3 -
-            six_r_potential_t_5) + six_r_potential_t_8*six_r_s_3 - six_r_h_1_in_spec1_x*six_r_s_2
+            six_r_bias_t_3) + six_r_potential_t_6*six_r_s_3 - six_r_h_1_in_spec1_x*six_r_s_2
         )
-        six_r_potential_t_12 = (
-        six_r_h_1_in_spec1_z + six_r_h_2_in_spec2_z + six_r_h_3_in_spec3_z +
-            six_r_b_in_spec2_z*six_r_link1_mass + six_r_b_in_spec2_z*six_r_link2_mass +
+        six_r_potential_t_10 = (
+        six_r_h_1_in_spec1_z + six_r_h_2_in_spec2_z + six_r_h_3_in_spec3_z + six_r_h_4_in_spec2_z
+            + six_r_b_in_spec2_z*six_r_link1_mass + six_r_b_in_spec2_z*six_r_link2_mass +
             six_r_b_in_spec2_z*six_r_link3_mass + six_r_b_in_spec2_z*six_r_link4_mass +
-            six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z + six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_z
-            + six_r_h_4_in_spec4_y*six_r_h_4_t + six_r_h_4_t*six_r_potential_t_4
+            six_r_d_Gamma_4_t*six_r_h_4_t + six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_z
         )
-        six_r_potential_t_13 = (
-        six_r_potential_t_10*(six_r_c_2*six_r_g_in_axes1_z + six_r_g_in_axes1_x*six_r_s_2) +
-            six_r_potential_t_11*(six_r_c_2*six_r_g_in_axes1_x - six_r_g_in_axes1_z*six_r_s_2) +
-            six_r_potential_t_12*(six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1)
+        six_r_potential_t_11 = (
+        six_r_g_in_axes1_y*six_r_potential_t_10 + six_r_g_in_axes2_x*six_r_potential_t_8 +
+            six_r_g_in_axes2_y*six_r_potential_t_9
         )
         # (potential) potential energy
-        potential_t_2 += six_r_potential_t_13
+        potential_t_2 += six_r_potential_t_11
     # (potential) potential energy
     potential = -potential_t - potential_t_2
     # (potential) potential energy
@@ -11946,6 +12290,22 @@ def _run_condition(m, X, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-h_4) first moment of link 4 about the origin of link 4
+        six_r_e_2_in_axes5_z = cos(six_r_q_4)
+        six_r_h_4_t = sin(six_r_q_4)
+        # (six_r-J_5) inertia tensor of link 5 about the connection point
+        six_r_e_4_in_axes5_x = cos(six_r_q_5)
+        six_r_J_5_t = sin(six_r_q_5)
+        # (six_r-S) from the base point to the connection point
+        six_r_q_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
+        )
+        six_r_q_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
+        )
+        six_r_q_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
+        )
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
         six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
@@ -11958,28 +12318,74 @@ def _run_condition(m, X, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
-        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = cos(six_r_q_4)
-        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = sin(six_r_q_4)
-        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = cos(six_r_q_5)
-        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = sin(six_r_q_5)
+        # (six_r-S_dot) velocity of the connection point
+        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
+        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
+        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
+        six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
+        axis_z_six_r_axes5_x = (
+        six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
+            six_r_S_dot_t_6*six_r_base_frame_xz
+        )
+        axis_z_six_r_axes5_y = (
+        six_r_S_dot_t_3*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
+            six_r_S_dot_t_6*six_r_base_frame_yz
+        )
+        axis_z_six_r_axes5_z = (
+        six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
+            six_r_S_dot_t_6*six_r_base_frame_zz
+        )
+        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
+        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
+        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
+        six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
+        six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_13 = six_r_S_dot_t_11*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_y
+        axis_y_six_r_axes5_x = (
+        six_r_S_dot_t_10*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
+            six_r_S_dot_t_13*six_r_base_frame_xz
+        )
+        axis_y_six_r_axes5_y = (
+        six_r_S_dot_t_10*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
+            six_r_S_dot_t_13*six_r_base_frame_yz
+        )
+        axis_y_six_r_axes5_z = (
+        six_r_S_dot_t_10*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
+            six_r_S_dot_t_13*six_r_base_frame_zz
+        )
+        axis_x_six_r_axes5_x = (
+        axis_y_six_r_axes5_y*axis_z_six_r_axes5_z - axis_y_six_r_axes5_z*axis_z_six_r_axes5_y
+        )
+        axis_x_six_r_axes5_y = (
+        axis_y_six_r_axes5_z*axis_z_six_r_axes5_x - axis_y_six_r_axes5_x*axis_z_six_r_axes5_z
+        )
+        axis_x_six_r_axes5_z = (
+        axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
+        )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
+        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes4_z = (
+        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
+        )
+        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
+        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
+        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_x = (
+        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
+        )
+        six_r_r_3_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
+        )
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -11987,10 +12393,10 @@ def _run_condition(m, X, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
+        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
+        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -11999,17 +12405,17 @@ def _run_condition(m, X, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
+        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
+        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
+        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -12020,31 +12426,31 @@ def _run_condition(m, X, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
-        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
-            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
+        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
+            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
+            six_r_J_5_t*six_r_r_4_in_axes4_z)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -12077,209 +12483,191 @@ def _run_condition(m, X, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
+        six_r_end_p1_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
+        )
+        six_r_n_m1_t_11 = (
+        six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_t_12 = (
+        six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        )
+        six_r_n_m1_in_axes4_z = (
+        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m1_x = (
+        axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m1_y = (
+        axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_y*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m1_z = (
+        axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y
+        )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
+        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_n_m2_t = (
+        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_t_2 = (
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        )
+        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        six_r_n_m2_x = (
+        axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
+            axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z
+        )
+        six_r_n_m2_y = (
+        axis_z_six_r_axes5_y*six_r_end_p1_in_axes5_y -
+            axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z
+        )
+        six_r_n_m2_z = (
+        axis_z_six_r_axes5_z*six_r_end_p1_in_axes5_y -
+            axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z
+        )
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
-        six_r_w_1_t = (
-        six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
+        six_r_w_1_t = six_r_n_m1_t_11*six_r_size
+        six_r_w_1_t_2 = six_r_n_m2_t*six_r_size
+        six_r_w_1_t_3 = six_r_n_m1_t_12*six_r_size
+        six_r_w_1_t_4 = six_r_n_m2_t_2*six_r_size
+        six_r_w_1_t_5 = six_r_n_m1_in_axes4_z*six_r_size
+        six_r_w_1_t_6 = six_r_n_m2_in_axes4_z*six_r_size
+        six_r_w_1_t_7 = six_r_end_p1_in_axes5_y*six_r_size
+        six_r_w_1_t_8 = sqrt(six_r_size_t + six_r_w_1_t_7*six_r_w_1_t_7)
+        inv_six_r_w_1_t_8 = 1.0/six_r_w_1_t_8
+        six_r_w_1_t_9 = inv_six_r_w_1_t_8*six_r_platform_joint_offset_x
+        six_r_w_1_t_10 = inv_six_r_w_1_t_8*six_r_w_1_t_7
+        six_r_w_1_t_11 = six_r_w_1_t_10*six_r_w_1_t_6
+        six_r_w_1_t_12 = six_r_w_1_t_11*six_r_w_1_t_9
+        six_r_w_1_t_13 = six_r_w_1_t_6 - six_r_w_1_t_10*six_r_w_1_t_11
+        six_r_w_1_t_14 = six_r_v_1_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_10*six_r_w_1_t_2
+        six_r_w_1_t_15 = six_r_v_1_in_axes5_y - six_r_w_1_t_14*six_r_w_1_t_9
+        six_r_w_1_t_16 = six_r_w_1_t_2 + six_r_w_1_t_10*six_r_w_1_t_14
+        six_r_w_1_t_17 = six_r_w_1_t_10*six_r_w_1_t_4
+        six_r_w_1_t_18 = six_r_v_2_in_axes5_y*six_r_w_1_t_9 - six_r_w_1_t_17
+        six_r_w_1_t_19 = six_r_v_2_in_axes5_y - six_r_w_1_t_18*six_r_w_1_t_9
+        six_r_w_1_t_20 = six_r_w_1_t_4 + six_r_w_1_t_10*six_r_w_1_t_18
+        six_r_w_1_t_21 = six_r_w_1_t_17 - six_r_v_3_in_axes5_y*six_r_w_1_t_9
+        six_r_w_1_t_22 = six_r_v_3_in_axes5_y + six_r_w_1_t_21*six_r_w_1_t_9
+        six_r_w_1_t_23 = six_r_w_1_t_4 - six_r_w_1_t_10*six_r_w_1_t_21
+        six_r_w_1_t_24 = (
+        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_12*six_r_w_1_t_12 +
+            six_r_w_1_t_13*six_r_w_1_t_13 + six_r_w_1_t_5*six_r_w_1_t_5)
         )
-        six_r_w_1_t_2 = (
-        six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
+        inv_six_r_w_1_t_24 = 1.0/six_r_w_1_t_24
+        six_r_w_1_t_25 = inv_six_r_w_1_t_24*six_r_w_1_t_12
+        six_r_w_1_t_26 = inv_six_r_w_1_t_24*six_r_v_4_in_axes5_z
+        six_r_w_1_t_27 = inv_six_r_w_1_t_24*six_r_w_1_t_5
+        six_r_w_1_t_28 = inv_six_r_w_1_t_24*six_r_w_1_t_13
+        six_r_w_1_t_29 = (
+        six_r_w_1_t*six_r_w_1_t_27 + six_r_w_1_t_15*six_r_w_1_t_25 + six_r_w_1_t_16*six_r_w_1_t_28
+            - six_r_v_1_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_3 = (
-        six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_30 = six_r_w_1_t_25*six_r_w_1_t_29 - six_r_w_1_t_15
+        six_r_w_1_t_31 = six_r_v_1_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_29
+        six_r_w_1_t_32 = six_r_w_1_t_27*six_r_w_1_t_29 - six_r_w_1_t
+        six_r_w_1_t_33 = six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_16
+        six_r_w_1_t_34 = six_r_w_1_t_27*six_r_w_1_t_3
+        six_r_w_1_t_35 = (
+        six_r_w_1_t_34 + six_r_w_1_t_19*six_r_w_1_t_25 + six_r_w_1_t_20*six_r_w_1_t_28 -
+            six_r_v_2_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
+        six_r_w_1_t_36 = six_r_w_1_t_25*six_r_w_1_t_35 - six_r_w_1_t_19
+        six_r_w_1_t_37 = six_r_v_2_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_35
+        six_r_w_1_t_38 = six_r_w_1_t_27*six_r_w_1_t_35 - six_r_w_1_t_3
+        six_r_w_1_t_39 = six_r_w_1_t_28*six_r_w_1_t_35 - six_r_w_1_t_20
+        six_r_w_1_t_40 = (
+        six_r_w_1_t_34 + six_r_w_1_t_22*six_r_w_1_t_25 + six_r_w_1_t_23*six_r_w_1_t_28 -
+            six_r_v_3_in_axes5_z*six_r_w_1_t_26
         )
-        six_r_w_1_t_5 = six_r_size*six_r_w_1_t
-        six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
-        six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
-        six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
-        six_r_w_1_t_9 = (
-        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
+        six_r_w_1_t_41 = six_r_w_1_t_25*six_r_w_1_t_40 - six_r_w_1_t_22
+        six_r_w_1_t_42 = six_r_v_3_in_axes5_z + six_r_w_1_t_26*six_r_w_1_t_40
+        six_r_w_1_t_43 = six_r_w_1_t_27*six_r_w_1_t_40 - six_r_w_1_t_3
+        six_r_w_1_t_44 = six_r_w_1_t_28*six_r_w_1_t_40 - six_r_w_1_t_23
+        six_r_w_1_t_45 = (
+        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_30*six_r_w_1_t_30 +
+            six_r_w_1_t_31*six_r_w_1_t_31 + six_r_w_1_t_32*six_r_w_1_t_32 +
+            six_r_w_1_t_33*six_r_w_1_t_33)
         )
-        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
-        six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
-        six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
-        inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
-        six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x
-        six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11
-        six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14
-        six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15
-        six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15
-        six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_14*six_r_w_1_t_6
-        six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18
-        six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18
-        six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8
-        six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21
-        six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22
-        six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22
-        six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13
-        six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25
-        six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25
-        six_r_w_1_t_28 = (
-        sqrt(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z + six_r_w_1_t_16*six_r_w_1_t_16 +
-            six_r_w_1_t_17*six_r_w_1_t_17 + six_r_w_1_t_9*six_r_w_1_t_9)
+        inv_six_r_w_1_t_45 = 1.0/six_r_w_1_t_45
+        six_r_w_1_t_46 = inv_six_r_w_1_t_45*six_r_v_1_in_axes5_x
+        six_r_w_1_t_47 = inv_six_r_w_1_t_45*six_r_w_1_t_30
+        six_r_w_1_t_48 = inv_six_r_w_1_t_45*six_r_w_1_t_31
+        six_r_w_1_t_49 = inv_six_r_w_1_t_45*six_r_w_1_t_32
+        six_r_w_1_t_50 = inv_six_r_w_1_t_45*six_r_w_1_t_33
+        six_r_w_1_t_51 = (
+        six_r_v_2_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_36*six_r_w_1_t_47 +
+            six_r_w_1_t_37*six_r_w_1_t_48 + six_r_w_1_t_38*six_r_w_1_t_49 +
+            six_r_w_1_t_39*six_r_w_1_t_50
         )
-        inv_six_r_w_1_t_28 = 1.0/six_r_w_1_t_28
-        six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16
-        six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z
-        six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9
-        six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17
-        six_r_w_1_t_33 = (
-        six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32 +
-            six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_52 = six_r_v_2_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_51
+        six_r_w_1_t_53 = six_r_w_1_t_36 - six_r_w_1_t_47*six_r_w_1_t_51
+        six_r_w_1_t_54 = six_r_w_1_t_37 - six_r_w_1_t_48*six_r_w_1_t_51
+        six_r_w_1_t_55 = six_r_w_1_t_38 - six_r_w_1_t_49*six_r_w_1_t_51
+        six_r_w_1_t_56 = six_r_w_1_t_39 - six_r_w_1_t_50*six_r_w_1_t_51
+        six_r_w_1_t_57 = (
+        six_r_v_3_in_axes5_x*six_r_w_1_t_46 + six_r_w_1_t_41*six_r_w_1_t_47 +
+            six_r_w_1_t_42*six_r_w_1_t_48 + six_r_w_1_t_43*six_r_w_1_t_49 +
+            six_r_w_1_t_44*six_r_w_1_t_50
         )
-        six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19
-        six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33
-        six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5
-        six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20
-        six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7
-        six_r_w_1_t_39 = (
-        six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32 -
-            six_r_v_2_in_axes5_z*six_r_w_1_t_30
+        six_r_w_1_t_58 = six_r_v_3_in_axes5_x - six_r_w_1_t_46*six_r_w_1_t_57
+        six_r_w_1_t_59 = six_r_w_1_t_41 - six_r_w_1_t_47*six_r_w_1_t_57
+        six_r_w_1_t_60 = six_r_w_1_t_42 - six_r_w_1_t_48*six_r_w_1_t_57
+        six_r_w_1_t_61 = six_r_w_1_t_43 - six_r_w_1_t_49*six_r_w_1_t_57
+        six_r_w_1_t_62 = six_r_w_1_t_44 - six_r_w_1_t_50*six_r_w_1_t_57
+        six_r_w_1_t_63 = (
+        sqrt(six_r_w_1_t_52*six_r_w_1_t_52 + six_r_w_1_t_53*six_r_w_1_t_53 +
+            six_r_w_1_t_54*six_r_w_1_t_54 + six_r_w_1_t_55*six_r_w_1_t_55 +
+            six_r_w_1_t_56*six_r_w_1_t_56)
         )
-        six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23
-        six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39
-        six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7
-        six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24
-        six_r_w_1_t_44 = (
-        six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32 -
-            six_r_v_3_in_axes5_z*six_r_w_1_t_30
+        inv_six_r_w_1_t_63 = 1.0/six_r_w_1_t_63
+        six_r_w_1_t_64 = inv_six_r_w_1_t_63*six_r_w_1_t_52
+        six_r_w_1_t_65 = inv_six_r_w_1_t_63*six_r_w_1_t_53
+        six_r_w_1_t_66 = inv_six_r_w_1_t_63*six_r_w_1_t_54
+        six_r_w_1_t_67 = inv_six_r_w_1_t_63*six_r_w_1_t_55
+        six_r_w_1_t_68 = inv_six_r_w_1_t_63*six_r_w_1_t_56
+        six_r_w_1_t_69 = (
+        six_r_w_1_t_58*six_r_w_1_t_64 + six_r_w_1_t_59*six_r_w_1_t_65 +
+            six_r_w_1_t_60*six_r_w_1_t_66 + six_r_w_1_t_61*six_r_w_1_t_67 +
+            six_r_w_1_t_62*six_r_w_1_t_68
         )
-        six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26
-        six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44
-        six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7
-        six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27
-        six_r_w_1_t_49 = (
-        sqrt(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x + six_r_w_1_t_34*six_r_w_1_t_34 +
-            six_r_w_1_t_35*six_r_w_1_t_35 + six_r_w_1_t_36*six_r_w_1_t_36 +
-            six_r_w_1_t_37*six_r_w_1_t_37)
+        six_r_w_1_t_70 = six_r_w_1_t_58 - six_r_w_1_t_64*six_r_w_1_t_69
+        six_r_w_1_t_71 = six_r_w_1_t_59 - six_r_w_1_t_65*six_r_w_1_t_69
+        six_r_w_1_t_72 = six_r_w_1_t_60 - six_r_w_1_t_66*six_r_w_1_t_69
+        six_r_w_1_t_73 = six_r_w_1_t_61 - six_r_w_1_t_67*six_r_w_1_t_69
+        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_69
+        six_r_w_1_t_75 = (
+        sqrt(six_r_w_1_t_70*six_r_w_1_t_70 + six_r_w_1_t_71*six_r_w_1_t_71 +
+            six_r_w_1_t_72*six_r_w_1_t_72 + six_r_w_1_t_73*six_r_w_1_t_73 +
+            six_r_w_1_t_74*six_r_w_1_t_74)
         )
-        inv_six_r_w_1_t_49 = 1.0/six_r_w_1_t_49
-        six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x
-        six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34
-        six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35
-        six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36
-        six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37
-        six_r_w_1_t_55 = (
-        six_r_v_2_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_40*six_r_w_1_t_51 +
-            six_r_w_1_t_41*six_r_w_1_t_52 + six_r_w_1_t_42*six_r_w_1_t_53 +
-            six_r_w_1_t_43*six_r_w_1_t_54
-        )
-        six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55
-        six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55
-        six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55
-        six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55
-        six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55
-        six_r_w_1_t_61 = (
-        six_r_v_3_in_axes5_x*six_r_w_1_t_50 + six_r_w_1_t_45*six_r_w_1_t_51 +
-            six_r_w_1_t_46*six_r_w_1_t_52 + six_r_w_1_t_47*six_r_w_1_t_53 +
-            six_r_w_1_t_48*six_r_w_1_t_54
-        )
-        six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61
-        six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61
-        six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61
-        six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61
-        six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61
-        six_r_w_1_t_67 = (
-        sqrt(six_r_w_1_t_56*six_r_w_1_t_56 + six_r_w_1_t_57*six_r_w_1_t_57 +
-            six_r_w_1_t_58*six_r_w_1_t_58 + six_r_w_1_t_59*six_r_w_1_t_59 +
-            six_r_w_1_t_60*six_r_w_1_t_60)
-        )
-        inv_six_r_w_1_t_67 = 1.0/six_r_w_1_t_67
-        six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56
-        six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57
-        six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58
-        six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59
-        six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60
-        six_r_w_1_t_73 = (
-        six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69 +
-            six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72
-        )
-        six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73
-        six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73
-        six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73
-        six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73
-        six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73
-        six_r_w_1_t_79 = (
-        sqrt(six_r_w_1_t_74*six_r_w_1_t_74 + six_r_w_1_t_75*six_r_w_1_t_75 +
-            six_r_w_1_t_76*six_r_w_1_t_76 + six_r_w_1_t_77*six_r_w_1_t_77 +
-            six_r_w_1_t_78*six_r_w_1_t_78)
-        )
-        six_r_pivot_size = abs(six_r_w_1_t_12)
-        six_r_pivot_size_2 = abs(six_r_w_1_t_28)
-        six_r_pivot_size_3 = abs(six_r_w_1_t_49)
-        six_r_pivot_size_4 = abs(six_r_w_1_t_67)
-        six_r_pivot_size_5 = abs(six_r_w_1_t_79)
+        inv_six_r_w_1_t_75 = 1.0/six_r_w_1_t_75
+        six_r_w_1_t_76 = inv_six_r_w_1_t_75*six_r_w_1_t_70
+        six_r_w_1_t_77 = inv_six_r_w_1_t_75*six_r_w_1_t_71
+        six_r_w_1_t_78 = inv_six_r_w_1_t_75*six_r_w_1_t_72
+        six_r_pivot_size = abs(six_r_w_1_t_8)
+        six_r_pivot_size_2 = abs(six_r_w_1_t_24)
+        six_r_pivot_size_3 = abs(six_r_w_1_t_45)
+        six_r_pivot_size_4 = abs(six_r_w_1_t_63)
+        six_r_pivot_size_5 = abs(six_r_w_1_t_75)
         six_r_least_pivots = (
         least(least(least(least(inv_six_r_size*six_r_pivot_size,
             inv_six_r_size*six_r_pivot_size_2), inv_six_r_size*six_r_pivot_size_3),
             inv_six_r_size*six_r_pivot_size_4), inv_six_r_size*six_r_pivot_size_5)
         )
+        # (six_r-m1_w_1) moment part 1 of reciprocal wrench 1
+        six_r_m1_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_73
+        # (six_r-m2_w_1) moment part 2 of reciprocal wrench 1
+        six_r_m2_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_74
         # (six_r-w_2) force part of reciprocal wrench 2
-        six_r_w_2_t = six_r_c_3*six_r_s_4
-        six_r_w_2_t_2 = six_r_s_3*six_r_s_4
-        six_r_w_2_t_3 = six_r_c_2*six_r_w_2_t_2 + six_r_s_2*six_r_w_2_t
-        six_r_w_2_t_4 = six_r_s_2*six_r_w_2_t_2 - six_r_c_2*six_r_w_2_t
-        six_r_w_2_t_5 = six_r_c_1*six_r_w_2_t_4 - six_r_c_4*six_r_s_1
-        six_r_w_2_t_6 = six_r_c_1*six_r_c_4 + six_r_s_1*six_r_w_2_t_4
-        axis_z_six_r_axes5_x = (
-        six_r_base_frame_xx*six_r_w_2_t_3 + six_r_base_frame_xy*six_r_w_2_t_5 +
-            six_r_base_frame_xz*six_r_w_2_t_6
-        )
-        axis_z_six_r_axes5_y = (
-        six_r_base_frame_yx*six_r_w_2_t_3 + six_r_base_frame_yy*six_r_w_2_t_5 +
-            six_r_base_frame_yz*six_r_w_2_t_6
-        )
-        axis_z_six_r_axes5_z = (
-        six_r_base_frame_zx*six_r_w_2_t_3 + six_r_base_frame_zy*six_r_w_2_t_5 +
-            six_r_base_frame_zz*six_r_w_2_t_6
-        )
-        six_r_w_2_t_7 = six_r_c_4*six_r_c_5
-        six_r_w_2_t_8 = six_r_s_3*six_r_s_5 - six_r_c_3*six_r_w_2_t_7
-        six_r_w_2_t_9 = -six_r_c_3*six_r_s_5 - six_r_s_3*six_r_w_2_t_7
-        six_r_w_2_t_10 = six_r_c_2*six_r_w_2_t_9 + six_r_s_2*six_r_w_2_t_8
-        six_r_w_2_t_11 = six_r_s_2*six_r_w_2_t_9 - six_r_c_2*six_r_w_2_t_8
-        six_r_w_2_t_12 = six_r_c_1*six_r_w_2_t_11 - six_r_e_2_in_axes5_y*six_r_s_1
-        six_r_w_2_t_13 = six_r_c_1*six_r_e_2_in_axes5_y + six_r_s_1*six_r_w_2_t_11
-        axis_y_six_r_axes5_x = (
-        six_r_base_frame_xx*six_r_w_2_t_10 + six_r_base_frame_xy*six_r_w_2_t_12 +
-            six_r_base_frame_xz*six_r_w_2_t_13
-        )
-        axis_y_six_r_axes5_y = (
-        six_r_base_frame_yx*six_r_w_2_t_10 + six_r_base_frame_yy*six_r_w_2_t_12 +
-            six_r_base_frame_yz*six_r_w_2_t_13
-        )
-        axis_y_six_r_axes5_z = (
-        six_r_base_frame_zx*six_r_w_2_t_10 + six_r_base_frame_zy*six_r_w_2_t_12 +
-            six_r_base_frame_zz*six_r_w_2_t_13
-        )
-        axis_x_six_r_axes5_x = (
-        axis_y_six_r_axes5_y*axis_z_six_r_axes5_z - axis_y_six_r_axes5_z*axis_z_six_r_axes5_y
-        )
-        axis_x_six_r_axes5_y = (
-        axis_y_six_r_axes5_z*axis_z_six_r_axes5_x - axis_y_six_r_axes5_x*axis_z_six_r_axes5_z
-        )
-        axis_x_six_r_axes5_z = (
-        axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
-        )
-        inv_six_r_w_1_t_79 = 1.0/six_r_w_1_t_79
-        six_r_w_2_t_14 = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73
-        six_r_w_2_in_axes5_x = (
-        inv_six_r_w_1_t_67*six_r_w_1_t_68 - inv_six_r_w_1_t_79*six_r_w_1_t_74*six_r_w_2_t_14
-        )
-        six_r_w_2_in_axes5_y = (
-        inv_six_r_w_1_t_79*six_r_w_1_t_75*six_r_w_2_t_14 - inv_six_r_w_1_t_67*six_r_w_1_t_69
-        )
-        six_r_w_2_in_axes5_z = (
-        inv_six_r_w_1_t_67*six_r_w_1_t_70 - inv_six_r_w_1_t_79*six_r_w_1_t_76*six_r_w_2_t_14
-        )
+        six_r_w_2_t = inv_six_r_w_1_t_63*inv_six_r_w_1_t_75*six_r_w_1_t_69
+        six_r_w_2_in_axes5_x = inv_six_r_w_1_t_63*six_r_w_1_t_64 - six_r_w_1_t_76*six_r_w_2_t
+        six_r_w_2_in_axes5_y = six_r_w_1_t_77*six_r_w_2_t - inv_six_r_w_1_t_63*six_r_w_1_t_65
+        six_r_w_2_in_axes5_z = inv_six_r_w_1_t_63*six_r_w_1_t_66 - six_r_w_1_t_78*six_r_w_2_t
         six_r_w_2_x = (
         axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x + axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y +
             axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z
@@ -12293,47 +12681,20 @@ def _run_condition(m, X, q):
             axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z
         )
         # (six_r-m1_w_2) moment part 1 of reciprocal wrench 2
-        six_r_m1_w_2 = (
-        six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_71 -
-            inv_six_r_w_1_t_79*six_r_w_1_t_77*six_r_w_2_t_14)
-        )
+        six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_67 - six_r_m1_w_1_t*six_r_w_2_t)
         # (six_r-m2_w_2) moment part 2 of reciprocal wrench 2
-        six_r_m2_w_2 = (
-        six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_72 -
-            inv_six_r_w_1_t_79*six_r_w_1_t_78*six_r_w_2_t_14)
-        )
+        six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_68 - six_r_m2_w_1_t*six_r_w_2_t)
         # (six_r-o_2) moment part of reciprocal wrench 2
-        six_r_o_2_x = (
-        six_r_m1_w_2*(axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_x*six_r_n_m2_in_axes5_z) +
-            six_r_m2_w_2*(axis_z_six_r_axes5_x*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z)
-        )
-        six_r_o_2_y = (
-        six_r_m1_w_2*(axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_y*six_r_n_m2_in_axes5_z) +
-            six_r_m2_w_2*(axis_z_six_r_axes5_y*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z)
-        )
-        six_r_o_2_z = (
-        six_r_m1_w_2*(axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_z*six_r_n_m2_in_axes5_z) +
-            six_r_m2_w_2*(axis_z_six_r_axes5_z*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z)
-        )
+        six_r_o_2_x = six_r_m1_w_2*six_r_n_m1_x + six_r_m2_w_2*six_r_n_m2_x
+        six_r_o_2_y = six_r_m1_w_2*six_r_n_m1_y + six_r_m2_w_2*six_r_n_m2_y
+        six_r_o_2_z = six_r_m1_w_2*six_r_n_m1_z + six_r_m2_w_2*six_r_n_m2_z
         # (six_r-H_a_2) moment of the column's unit force about the platform origin
-        six_r_q_x = (
-        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
-        )
-        six_r_q_y = (
-        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
-        )
-        six_r_q_z = (
-        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
-        )
-        six_r_H_a_2_x = six_r_o_2_x + six_r_q_y*six_r_w_2_z - six_r_q_z*six_r_w_2_y
-        six_r_H_a_2_y = six_r_o_2_y + six_r_q_z*six_r_w_2_x - six_r_q_x*six_r_w_2_z
-        six_r_H_a_2_z = six_r_o_2_z + six_r_q_x*six_r_w_2_y - six_r_q_y*six_r_w_2_x
+        six_r_H_a_2_t = six_r_q_y*six_r_w_2_z - six_r_q_z*six_r_w_2_y
+        six_r_H_a_2_t_2 = six_r_q_z*six_r_w_2_x - six_r_q_x*six_r_w_2_z
+        six_r_H_a_2_t_3 = six_r_q_x*six_r_w_2_y - six_r_q_y*six_r_w_2_x
+        six_r_H_a_2_x = six_r_H_a_2_t + six_r_o_2_x
+        six_r_H_a_2_y = six_r_H_a_2_t_2 + six_r_o_2_y
+        six_r_H_a_2_z = six_r_H_a_2_t_3 + six_r_o_2_z
         # (spread) rms distance of the platform points from their centroid
         six_r_spread_t = b_c_in_platform_x - six_r_platform_point_x
         six_r_spread_t_2 = b_c_in_platform_y - six_r_platform_point_y
@@ -12343,10 +12704,9 @@ def _run_condition(m, X, q):
             six_r_spread_t_3*six_r_spread_t_3
         )
         clear = (
-        clear & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) &
-            (abs(six_r_w_1_t_67) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE *
-            six_r_size)
+        clear & (abs(six_r_w_1_t_8) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_24) > _TOLERANCE
+            * six_r_size) & (abs(six_r_w_1_t_45) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_63)
+            > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_75) > _TOLERANCE * six_r_size)
         )
         # (spread) rms distance of the platform points from their centroid
         spread_six_r += six_r_spread_t_4
@@ -12408,7 +12768,7 @@ def _run_closure_six_r(m, X, q):
     R_zz = 1.0 - quaternion_xx - quaternion_yy
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_gap_six_r = m.zeros("gap_six_r")
+    out_residual_six_r = m.zeros("residual_six_r")
     out_jacobian_six_r = m.zeros("jacobian_six_r")
     for leg, k in legs[0]:
         (
@@ -12426,19 +12786,25 @@ def _run_closure_six_r(m, X, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
+        # (six_r-h_4) first moment of link 4 about the origin of link 4
+        six_r_e_2_in_axes5_z = cos(six_r_q_4)
+        six_r_h_4_t = sin(six_r_q_4)
+        # (six_r-J_5) inertia tensor of link 5 about the connection point
+        six_r_e_4_in_axes5_x = cos(six_r_q_5)
+        six_r_J_5_t = sin(six_r_q_5)
         # (six_r-S) from the base point to the connection point
-        six_r_S_x = (
-        t_x + R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
-            R_xz*six_r_platform_point_z - six_r_base_point_x
+        six_r_q_x = (
+        R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
         )
-        six_r_S_y = (
-        t_y + R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
-            R_yz*six_r_platform_point_z - six_r_base_point_y
+        six_r_q_y = (
+        R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y + R_yz*six_r_platform_point_z
         )
-        six_r_S_z = (
-        t_z + R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
-            R_zz*six_r_platform_point_z - six_r_base_point_z
+        six_r_q_z = (
+        R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y + R_zz*six_r_platform_point_z
         )
+        six_r_S_x = six_r_q_x + t_x - six_r_base_point_x
+        six_r_S_y = six_r_q_y + t_y - six_r_base_point_y
+        six_r_S_z = six_r_q_z + t_z - six_r_base_point_z
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
         six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
@@ -12451,28 +12817,28 @@ def _run_closure_six_r(m, X, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
-        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = cos(six_r_q_4)
-        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = sin(six_r_q_4)
-        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = cos(six_r_q_5)
-        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = sin(six_r_q_5)
+        # (six_r-S_dot) velocity of the connection point
+        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
+        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes4_z = (
+        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
+        )
+        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
+        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
+        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_x = (
+        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
+        )
+        six_r_r_3_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
+        )
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -12480,10 +12846,10 @@ def _run_closure_six_r(m, X, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
+        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
+        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -12492,17 +12858,17 @@ def _run_closure_six_r(m, X, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
+        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
+        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
+        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -12513,31 +12879,31 @@ def _run_closure_six_r(m, X, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
-        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
-            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
+        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
+            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
+            six_r_J_5_t*six_r_r_4_in_axes4_z)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -12570,9 +12936,11 @@ def _run_closure_six_r(m, X, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
-        six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
+        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
+        six_r_end_p1_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
+        )
         six_r_n_m1_t_11 = (
         six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -12580,51 +12948,57 @@ def _run_closure_six_r(m, X, q):
         six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
         )
         six_r_n_m1_in_axes4_z = (
-        -six_r_c_5*six_r_end_p1_in_axes5_y - six_r_n_m1_in_axes5_y*six_r_s_5
+        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
+        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
         six_r_n_m2_t = (
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
             six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
         )
         six_r_n_m2_t_2 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_end_p1_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
         )
-        six_r_n_m2_in_axes4_z = six_r_end_p1_in_axes5_z*six_r_s_5
-        # (six_r-gap) from the connection point as the links reach it to the platform's
-        six_r_gap_t = (
+        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        # (six_r-residual) from the connection point as the links reach it to the platform's
+        six_r_residual_t = (
         six_r_S_x*six_r_base_frame_xy + six_r_S_y*six_r_base_frame_yy +
             six_r_S_z*six_r_base_frame_zy
         )
-        six_r_gap_t_2 = (
+        six_r_residual_t_2 = (
         six_r_S_x*six_r_base_frame_xz + six_r_S_y*six_r_base_frame_yz +
             six_r_S_z*six_r_base_frame_zz
         )
-        six_r_gap_t_3 = (
+        six_r_residual_t_3 = (
         six_r_S_x*six_r_base_frame_xx + six_r_S_y*six_r_base_frame_yx +
             six_r_S_z*six_r_base_frame_zx
         )
-        six_r_gap_t_4 = six_r_c_1*six_r_gap_t + six_r_gap_t_2*six_r_s_1
-        six_r_gap_t_5 = six_r_c_1*six_r_gap_t_2 - six_r_gap_t*six_r_s_1
-        six_r_gap_t_6 = six_r_c_2*six_r_gap_t_3 + six_r_gap_t_4*six_r_s_2
-        six_r_gap_t_7 = six_r_c_2*six_r_gap_t_4 - six_r_gap_t_3*six_r_s_2
-        six_r_gap_t_8 = six_r_gap_t_6*six_r_s_3 - six_r_c_3*six_r_gap_t_7
-        six_r_gap_t_9 = six_r_c_3*six_r_gap_t_6 + six_r_gap_t_7*six_r_s_3
-        six_r_gap_t_10 = six_r_gap_t_5*six_r_s_4 - six_r_c_4*six_r_gap_t_8
-        six_r_gap_in_axes5_x = (
-        six_r_c_5*six_r_gap_t_9 + six_r_gap_t_10*six_r_s_5 - six_r_r_1_in_axes5_x
+        six_r_residual_t_4 = six_r_c_1*six_r_residual_t + six_r_residual_t_2*six_r_s_1
+        six_r_residual_t_5 = six_r_c_1*six_r_residual_t_2 - six_r_residual_t*six_r_s_1
+        six_r_residual_t_6 = six_r_c_2*six_r_residual_t_3 + six_r_residual_t_4*six_r_s_2
+        six_r_residual_t_7 = six_r_c_2*six_r_residual_t_4 - six_r_residual_t_3*six_r_s_2
+        six_r_residual_t_8 = six_r_residual_t_6*six_r_s_3 - six_r_c_3*six_r_residual_t_7
+        six_r_residual_t_9 = six_r_c_3*six_r_residual_t_6 + six_r_residual_t_7*six_r_s_3
+        six_r_residual_t_10 = (
+        six_r_h_4_t*six_r_residual_t_5 - six_r_e_2_in_axes5_z*six_r_residual_t_8
         )
-        six_r_gap_in_axes5_y = (
-        six_r_c_5*six_r_gap_t_10 - six_r_r_1_in_axes5_y - six_r_gap_t_9*six_r_s_5
+        six_r_residual_in_axes5_x = (
+        six_r_J_5_t*six_r_residual_t_10 + six_r_e_4_in_axes5_x*six_r_residual_t_9 -
+            six_r_r_1_in_axes5_x
         )
-        six_r_gap_in_axes5_z = (
-        six_r_c_4*six_r_gap_t_5 + six_r_gap_t_8*six_r_s_4 - six_r_r_1_in_axes5_z
+        six_r_residual_in_axes5_y = (
+        six_r_e_4_in_axes5_x*six_r_residual_t_10 - six_r_r_1_in_axes5_y -
+            six_r_J_5_t*six_r_residual_t_9
         )
-        # (six_r-gap) from the connection point as the links reach it to the platform's
-        out_gap_six_r[_gap_six_r_six_r[0][leg]] = six_r_gap_in_axes5_x
-        out_gap_six_r[_gap_six_r_six_r[1][leg]] = six_r_gap_in_axes5_y
-        out_gap_six_r[_gap_six_r_six_r[2][leg]] = six_r_gap_in_axes5_z
+        six_r_residual_in_axes5_z = (
+        six_r_e_2_in_axes5_z*six_r_residual_t_5 + six_r_h_4_t*six_r_residual_t_8 -
+            six_r_r_1_in_axes5_z
+        )
+        # (six_r-residual) from the connection point as the links reach it to the platform's
+        out_residual_six_r[_residual_six_r_six_r[0][leg]] = six_r_residual_in_axes5_x
+        out_residual_six_r[_residual_six_r_six_r[1][leg]] = six_r_residual_in_axes5_y
+        out_residual_six_r[_residual_six_r_six_r[2][leg]] = six_r_residual_in_axes5_z
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         out_jacobian_six_r[_jacobian_six_r_six_r[0][leg]] = six_r_v_1_in_axes5_x
         out_jacobian_six_r[_jacobian_six_r_six_r[1][leg]] = six_r_v_1_in_axes5_y
@@ -12642,21 +13016,21 @@ def _run_closure_six_r(m, X, q):
         # (six_r-v_5) velocity of the connection point per rate of joint 5
         out_jacobian_six_r[_jacobian_six_r_six_r[10][leg]] = six_r_platform_joint_offset_x
         # (legs_size) rms size of the legs, taken where the platform points coincide
-        out_gap_six_r[_gap_six_r_six_r[3][leg]] = -six_r_end_p1_in_axes5_z
+        out_residual_six_r[_residual_six_r_six_r[3][leg]] = -six_r_end_p1_in_axes5_z
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         out_jacobian_six_r[_jacobian_six_r_six_r[11][leg]] = -six_r_n_m1_t_11
         out_jacobian_six_r[_jacobian_six_r_six_r[12][leg]] = -six_r_n_m1_t_12
         out_jacobian_six_r[_jacobian_six_r_six_r[13][leg]] = -six_r_n_m1_t_12
         out_jacobian_six_r[_jacobian_six_r_six_r[14][leg]] = six_r_n_m1_in_axes4_z
         # (legs_size) rms size of the legs, taken where the platform points coincide
-        out_gap_six_r[_gap_six_r_six_r[4][leg]] = -six_r_n_m1_in_axes5_y
+        out_residual_six_r[_residual_six_r_six_r[4][leg]] = -six_r_n_m1_in_axes5_y
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
         out_jacobian_six_r[_jacobian_six_r_six_r[15][leg]] = -six_r_n_m2_t
         out_jacobian_six_r[_jacobian_six_r_six_r[16][leg]] = -six_r_n_m2_t_2
         out_jacobian_six_r[_jacobian_six_r_six_r[17][leg]] = -six_r_n_m2_t_2
         out_jacobian_six_r[_jacobian_six_r_six_r[18][leg]] = six_r_n_m2_in_axes4_z
         out_jacobian_six_r[_jacobian_six_r_six_r[19][leg]] = six_r_end_p1_in_axes5_y
-    return ok, (out_gap_six_r, out_jacobian_six_r,)
+    return ok, (out_residual_six_r, out_jacobian_six_r,)
 
 
 def _straight_6(a, b, rows, limits):
@@ -12786,7 +13160,7 @@ _ORDERS = (  # how systems are solved near home
 _GIVEN = ()  # positions in q and X of the extra coordinates
 _CLOSURES = (  # function, its inputs, shapes of its arrays; in q the joints of each leg, and those that turn;
     # rows of the Jacobian whose determinant tells the branch, and its signs
-    (_run_closure_six_r, ('X', 'q'), ('gap_six_r', 'jacobian_six_r'), np.array([[0, 1, 2, 3, 4], [5, 6, 7, 8, 9], [10, 11, 12, 13, 14], [15, 16, 17, 18, 19], [20, 21, 22, 23, 24], [25, 26, 27, 28, 29]]), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29], [0, 1, 2, 3, 4], _BRANCHES["six_r_sigma_closure"]),
+    (_run_closure_six_r, ('X', 'q'), ('residual_six_r', 'jacobian_six_r'), np.array([[0, 1, 2, 3, 4], [5, 6, 7, 8, 9], [10, 11, 12, 13, 14], [15, 16, 17, 18, 19], [20, 21, 22, 23, 24], [25, 26, 27, 28, 29]]), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29], [0, 1, 2, 3, 4], _BRANCHES["six_r_sigma_closure"]),
 )
 _Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
@@ -12924,13 +13298,13 @@ def _steps_singularity_distance(m, X, q0):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated, q0):
+def _steps_pose_residual(m, X, q_actuated, q0):
     q = _closed(m, X, q0)
     q, = m.run(_run_inverse_kinematics, ("q",), q)
     q_of_inverse_kinematics_from_1 = q[[1, 6, 11, 16, 21, 26]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_1
-    gap = _wrapped(subtract_1, [0, 1, 2, 3, 4, 5])
-    return (gap,)
+    residual = _wrapped(subtract_1, [0, 1, 2, 3, 4, 5])
+    return (residual,)
 
 
 def _steps_slope(m, X, q0):
@@ -12940,7 +13314,7 @@ def _steps_slope(m, X, q0):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0, q0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated, q0,), (q0,), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated, q0,), (q0,), True)
     return (X,)
 
 

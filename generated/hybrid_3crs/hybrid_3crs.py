@@ -561,6 +561,7 @@ def _prepare(p):
     # (crs-rho_tip_3) connection point to the centre of mass of link 3
     crs_rho_tip_3_in_spec3_x = crs_link3_centre_of_mass_x - crs_platform_joint_offset_x
     # (crs-h_3) first moment of link 3 about the connection point
+    inv_crs_size_t = 1.0/crs_size_t
     crs_h_3_in_spec3_x = crs_link3_mass*crs_rho_tip_3_in_spec3_x
     crs_h_3_in_spec3_y = crs_link3_centre_of_mass_y*crs_link3_mass
     crs_h_3_in_spec3_z = crs_link3_centre_of_mass_z*crs_link3_mass
@@ -581,8 +582,6 @@ def _prepare(p):
     crs_link3_inertia_yz - crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_z*crs_link3_mass
     )
     crs_J_3_in_spec3_zz = crs_link3_inertia_zz - crs_link3_mass*(crs_J_3_t_3 - crs_J_3_t_4)
-    # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-    inv_crs_size_t = 1.0/crs_size_t
     # (crs-acc_2) acceleration of the reference point of link 2, less gravity
     crs_g_in_axes1_z = (
     crs_base_frame_xx*gravity_x + crs_base_frame_yx*gravity_y + crs_base_frame_zx*gravity_z
@@ -675,9 +674,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_crs,
         (crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz,
@@ -714,9 +713,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_crs,
         (crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz, crs_J_3_in_spec3_yz,
@@ -1506,11 +1505,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1774,8 +1773,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1783,7 +1782,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1791,11 +1790,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1843,15 +1842,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1095 mul, 822 add, 9 div, 6 sqrt, 0 trig
+# dynamics: 1068 mul, 801 add, 9 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1933,39 +1931,12 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_crs_xx, M_tt_xy, M_tt_xz, M_tt_crs_yy, M_tt_yz, M_tt_crs_zz, M_ta_xx, M_ta_crs_xy,
         M_ta_crs_xz, M_ta_crs_yx, M_ta_yy, M_ta_crs_yz, M_ta_crs_zx, M_ta_crs_zy, M_ta_zz,
@@ -1986,7 +1957,7 @@ def _run_dynamics(m, X, V):
             crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
             crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (crs-S) from the base point to the connection point
+        # (crs-h_3) first moment of link 3 about the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -1996,39 +1967,37 @@ def _run_dynamics(m, X, V):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_z + t_z - crs_base_point_z
-        crs_S_in_turn1_x = (
-        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
+        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
+        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
+        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
+        crs_h_3_t_4 = (
+        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
+            crs_base_frame_zy*crs_h_3_t_3
         )
-        crs_S_in_turn1_y = (
-        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
+        crs_h_3_t_5 = (
+        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
+            crs_base_frame_zz*crs_h_3_t_3
         )
-        crs_S_in_turn1_z = (
-        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        crs_h_3_t_6 = (
+        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
+            crs_base_frame_zx*crs_h_3_t_3
         )
-        # (crs-rho2_1) squared amplitude
-        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
-        # (crs-root_1) root, with the sign of the branch
-        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
+        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
+        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
+        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
+        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
+        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
+        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_in_axes1_x = (
+        crs_e_1_in_axes3_x*crs_h_3_in_spec3_y + crs_h_3_in_spec3_x*crs_h_3_t_13
+        )
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
+        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
+        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
-        # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
-        # (crs-disc_2) discriminant of the distance equation
-        crs_disc_2 = crs_size_t - crs_rho2_1
-        # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
-        # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
-        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
-        # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-S_dot) velocity of the connection point
         crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
         crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
@@ -2037,13 +2006,14 @@ def _run_dynamics(m, X, V):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_c_3*(crs_c_3*crs_r_1_in_axes1_x - crs_r_1_in_axes1_z*crs_s_3) +
-            crs_s_3*(crs_c_3*crs_r_1_in_axes1_z + crs_r_1_in_axes1_x*crs_s_3)
+        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
+            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
+            + crs_h_3_t_13*crs_r_1_in_axes1_x)
         )
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
@@ -2054,16 +2024,19 @@ def _run_dynamics(m, X, V):
         crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
         crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_c_1*crs_c_3
-        crs_w_2_t_2 = crs_c_3*crs_s_1
+        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
+        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
+            crs_base_frame_xx*crs_h_3_t_13
         )
         axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
+            crs_base_frame_yx*crs_h_3_t_13
         )
         axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
+            crs_base_frame_zx*crs_h_3_t_13
         )
         axis_x_crs_axes3_x = (
         axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
@@ -2076,14 +2049,14 @@ def _run_dynamics(m, X, V):
         )
         inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
         crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
-        crs_w_2_in_axes3_x = crs_c_3 + crs_s_3*crs_w_2_t_3
-        crs_w_2_in_axes3_y = crs_c_3*crs_w_2_t_3 - crs_s_3
+        crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
         crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
         crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
         crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
         # (crs-w_3) reciprocal vector 3
-        crs_w_3_in_axes3_x = crs_s_3*inv_crs_d_4_in_axes1_z
-        crs_w_3_in_axes3_y = crs_c_3*inv_crs_d_4_in_axes1_z
+        crs_w_3_in_axes3_x = crs_h_3_t_13*inv_crs_d_4_in_axes1_z
+        crs_w_3_in_axes3_y = crs_e_1_in_axes3_x*inv_crs_d_4_in_axes1_z
         # (crs-qd_1) rate of joint 1
         crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
@@ -2101,8 +2074,8 @@ def _run_dynamics(m, X, V):
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_in_axes3_x = crs_c_3*crs_qd_1
-        crs_omega_1_in_axes3_y = -crs_qd_1*crs_s_3
+        crs_omega_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qd_1
+        crs_omega_1_in_axes3_y = -crs_h_3_t_13*crs_qd_1
         # (crs-W_3) centripetal tensor of link 3
         crs_W_3_in_axes3_yz = crs_omega_1_in_axes3_y*crs_qd_2_t
         crs_W_3_in_axes3_xz = crs_omega_1_in_axes3_x*crs_qd_2_t
@@ -2122,8 +2095,9 @@ def _run_dynamics(m, X, V):
         )
         # (crs-bias) acceleration of the connection point at zero joint accelerations
         crs_bias_t = (
-        crs_omega_1_in_axes3_x*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3) +
-            crs_omega_1_in_axes3_y*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2)
+        crs_omega_1_in_axes3_x*(crs_h_3_t_11*crs_h_3_t_13 + crs_h_3_t_13*crs_joint3_offset_x) +
+            crs_omega_1_in_axes3_y*(crs_e_1_in_axes3_x*crs_h_3_t_11 +
+            crs_e_1_in_axes3_x*crs_joint3_offset_x)
         )
         crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
         crs_bias_t_3 = -crs_omega_1_in_axes3_y*crs_platform_joint_offset_x
@@ -2136,7 +2110,8 @@ def _run_dynamics(m, X, V):
         )
         crs_bias_in_axes3_z = (
         crs_W_3_in_axes3_xz*crs_platform_joint_offset_x + crs_bias_t_2*crs_omega_1_in_axes3_x -
-            2.0*crs_qd_2*(crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*crs_s_3)
+            2.0*crs_qd_2*(crs_e_1_in_axes3_x*crs_omega_1_in_axes3_y +
+            crs_h_3_t_13*crs_omega_1_in_axes3_x)
         )
         # (crs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - crs_bias_in_axes3_x
@@ -2146,14 +2121,12 @@ def _run_dynamics(m, X, V):
         crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_3_o) remainder of: acceleration of joint 3
         crs_qdd_3_o = (
-        inv_crs_d_4_in_axes1_z*(crs_c_3*crs_rel_o_in_axes3_y + crs_rel_o_in_axes3_x*crs_s_3)
+        inv_crs_d_4_in_axes1_z*(crs_e_1_in_axes3_x*crs_rel_o_in_axes3_y +
+            crs_h_3_t_13*crs_rel_o_in_axes3_x)
         )
         # (crs-alpha_1_o) remainder of: angular acceleration of link 1
-        crs_alpha_1_o_in_axes3_x = crs_c_3*crs_qdd_1_o
-        crs_alpha_1_o_in_axes3_y = -crs_qdd_1_o*crs_s_3
-        # (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        crs_d_alpha_3_in_axes3_xz = crs_c_3*crs_w_1_in_axes3_z
-        crs_d_alpha_3_t = crs_s_3*crs_w_1_in_axes3_z
+        crs_alpha_1_o_in_axes3_x = crs_e_1_in_axes3_x*crs_qdd_1_o
+        crs_alpha_1_o_in_axes3_y = -crs_h_3_t_13*crs_qdd_1_o
         # (crs-alpha_3_o) remainder of: angular acceleration of link 3
         crs_alpha_3_o_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x
         crs_alpha_3_o_in_axes3_y = crs_alpha_1_o_in_axes3_y - crs_W_3_in_axes3_xz
@@ -2164,28 +2137,31 @@ def _run_dynamics(m, X, V):
         crs_B_3_o_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x
         # (crs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         crs_acc_2_o_in_axes1_z = (
-        crs_c_3*crs_rel_o_in_axes3_x + crs_qdd_3_o*crs_r_1_in_axes1_x - crs_g_in_axes1_z -
-            crs_rel_o_in_axes3_y*crs_s_3
+        crs_e_1_in_axes3_x*crs_rel_o_in_axes3_x + crs_qdd_3_o*crs_r_1_in_axes1_x -
+            crs_g_in_axes1_z - crs_h_3_t_13*crs_rel_o_in_axes3_y
         )
         # (crs-f_2_o) remainder of: inertia force of link 2 less its weight
         crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass
-        # (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        # (crs-acc_3) acceleration of the reference point of link 3, less gravity
         crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
         crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
-        crs_acc_3_o_in_axes3_x = (
-        crs_u_1_in_axes3_x - crs_c_3*crs_g_in_axes1_z - crs_g_in_axes1_x*crs_s_3
-        )
-        crs_acc_3_o_in_axes3_y = (
-        crs_u_1_in_axes3_y + crs_g_in_axes1_z*crs_s_3 - crs_c_3*crs_g_in_axes1_x
-        )
+        crs_g_in_axes3_x = crs_e_1_in_axes3_x*crs_g_in_axes1_z + crs_g_in_axes1_x*crs_h_3_t_13
+        crs_g_in_axes3_y = crs_e_1_in_axes3_x*crs_g_in_axes1_x - crs_g_in_axes1_z*crs_h_3_t_13
+        # (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x - crs_g_in_axes3_x
+        crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y - crs_g_in_axes3_y
         crs_acc_3_o_in_axes3_z = crs_u_1_in_axes3_z - crs_g_in_axes1_y
+        # (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        crs_mu_3_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x
+        crs_mu_3_t_2 = crs_omega_1_in_axes3_y*crs_omega_1_in_axes3_y
+        crs_mu_3_t_3 = crs_qd_2_t*crs_qd_2_t
+        crs_mu_3_t_4 = crs_J_3_in_spec3_yz*(crs_mu_3_t_2 - crs_mu_3_t_3)
+        crs_mu_3_t_5 = crs_J_3_in_spec3_xz*(crs_mu_3_t - crs_mu_3_t_3)
+        crs_mu_3_t_6 = crs_J_3_in_spec3_xy*(crs_mu_3_t - crs_mu_3_t_2)
         # (crs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        crs_mu_3_o_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x
-        crs_mu_3_o_t_2 = crs_omega_1_in_axes3_y*crs_omega_1_in_axes3_y
-        crs_mu_3_o_t_3 = crs_qd_2_t*crs_qd_2_t
         crs_mu_3_o_in_axes3_x = (
-        crs_B_3_o_in_axes3_yx*crs_J_3_in_spec3_xz + crs_B_3_o_in_axes3_zy*crs_Sigma_3_in_axes3_yy
-            + crs_J_3_in_spec3_yz*(crs_mu_3_o_t_2 - crs_mu_3_o_t_3) +
+        crs_mu_3_t_4 + crs_B_3_o_in_axes3_yx*crs_J_3_in_spec3_xz +
+            crs_B_3_o_in_axes3_zy*crs_Sigma_3_in_axes3_yy +
             crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_in_axes3_x +
             crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_o_in_axes3_zx*crs_J_3_in_spec3_xy
             - crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_z
@@ -2193,77 +2169,82 @@ def _run_dynamics(m, X, V):
         crs_mu_3_o_in_axes3_y = (
         crs_B_3_o_in_axes3_zy*crs_J_3_in_spec3_xy +
             crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_in_axes3_y +
-            crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_z - crs_B_3_o_in_axes3_xy*crs_J_3_in_spec3_yz
-            - crs_B_3_o_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_o_t -
-            crs_mu_3_o_t_3) - crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_x
+            crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_z - crs_mu_3_t_5 -
+            crs_B_3_o_in_axes3_xy*crs_J_3_in_spec3_yz -
+            crs_B_3_o_in_axes3_zx*crs_Sigma_3_in_axes3_xx -
+            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_x
         )
         crs_mu_3_o_in_axes3_z = (
-        crs_B_3_o_in_axes3_yx*crs_Sigma_3_in_axes3_xx + crs_J_3_in_spec3_xy*(crs_mu_3_o_t -
-            crs_mu_3_o_t_2) + crs_J_3_in_spec3_xz*crs_alpha_1_o_in_axes3_x +
+        crs_mu_3_t_6 + crs_B_3_o_in_axes3_yx*crs_Sigma_3_in_axes3_xx +
+            crs_J_3_in_spec3_xz*crs_alpha_1_o_in_axes3_x +
             crs_J_3_in_spec3_yz*crs_alpha_1_o_in_axes3_y +
             crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_x -
             crs_B_3_o_in_axes3_xy*crs_Sigma_3_in_axes3_yy -
             crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_y
         )
         # (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        crs_d_Gamma_3_in_axes3_z = (
-        crs_w_1_in_axes3_z*(crs_J_3_in_spec3_xz*crs_c_3 - crs_J_3_in_spec3_yz*crs_s_3)
-        )
         crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_d_4_in_axes1_z
-        crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*crs_s_3 - crs_h_3_in_spec3_y
-        crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_c_3*crs_d_Gamma_3_t
+        crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*crs_h_3_t_13 - crs_h_3_in_spec3_y
+        crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_d_Gamma_3_t*crs_e_1_in_axes3_x
+        # (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        crs_mu_1_t = crs_g_in_axes1_y*crs_h_2_in_spec1_y - crs_g_in_axes1_x*crs_h_2_in_spec1_z
         # (crs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        crs_mu_1_o_in_axes1_z = (
-        crs_J_2_in_spec1_xx*crs_qdd_1_o + crs_g_in_axes1_x*crs_h_2_in_spec1_z -
-            crs_g_in_axes1_y*crs_h_2_in_spec1_y
-        )
+        crs_mu_1_o_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1_o - crs_mu_1_t
         # (crs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         crs_N_1_o_in_axes1_z = (
-        crs_mu_1_o_in_axes1_z + crs_c_3*crs_mu_3_o_in_axes3_x - crs_mu_3_o_in_axes3_y*crs_s_3
+        crs_mu_1_o_in_axes1_z + crs_e_1_in_axes3_x*crs_mu_3_o_in_axes3_x -
+            crs_h_3_t_13*crs_mu_3_o_in_axes3_y
         )
         # (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
         crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
-        crs_d_Gamma_2_in_axes3_y = crs_c_3*crs_d_Gamma_2_t - crs_link2_mass*crs_s_3
-        # (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        crs_d_Gamma_1_in_axes1_y = (
-        crs_c_3*crs_h_3_in_spec3_y + crs_h_3_in_spec3_x*crs_s_3 +
-            crs_w_1_in_axes3_z*(crs_J_2_in_spec1_xx + crs_c_3*(crs_J_3_in_spec3_xx*crs_c_3 -
-            crs_J_3_in_spec3_xy*crs_s_3) - crs_s_3*(crs_J_3_in_spec3_xy*crs_c_3 -
-            crs_J_3_in_spec3_yy*crs_s_3))
+        crs_d_Gamma_2_in_axes3_y = (
+        crs_d_Gamma_2_t*crs_e_1_in_axes3_x - crs_h_3_t_13*crs_link2_mass
         )
+        # (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        crs_d_Gamma_1_in_axes1_x = (
+        inv_crs_d_4_in_axes1_z*(crs_J_3_in_spec3_xz*crs_e_1_in_axes3_x -
+            crs_J_3_in_spec3_yz*crs_h_3_t_13) - crs_h_3_in_spec3_z
+        )
+        crs_d_Gamma_1_in_axes1_y = (
+        crs_h_3_in_axes1_x + crs_w_1_in_axes3_z*(crs_J_2_in_spec1_xx +
+            crs_e_1_in_axes3_x*(crs_J_3_in_spec3_xx*crs_e_1_in_axes3_x -
+            crs_J_3_in_spec3_xy*crs_h_3_t_13) -
+            crs_h_3_t_13*(crs_J_3_in_spec3_xy*crs_e_1_in_axes3_x -
+            crs_J_3_in_spec3_yy*crs_h_3_t_13))
+        )
+        # (crs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        crs_d_G_in_axes3_zx = crs_d_Gamma_1_in_axes1_x*crs_h_3_t_13*crs_w_1_in_axes3_z
+        crs_d_G_in_axes3_zy = crs_d_Gamma_1_in_axes1_x*crs_e_1_in_axes3_x*crs_w_1_in_axes3_z
+        # (crs-c) leg force on the platform without actuation and without the mass at the connection point
+        crs_c_t = crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3)
+        crs_c_t_2 = crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3)
+        crs_c_t_3 = crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2)
         # (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         crs_d_c_in_axes3_xx = (
         crs_h_3_in_spec3_y*crs_w_3_in_axes3_x - crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
-            crs_w_2_in_axes3_x*(crs_c_3*crs_link2_mass + crs_d_Gamma_2_t*crs_s_3)
+            crs_w_2_in_axes3_x*(crs_d_Gamma_2_t*crs_h_3_t_13 + crs_e_1_in_axes3_x*crs_link2_mass)
         )
         crs_d_c_in_axes3_xy = (
         crs_h_3_in_spec3_y*crs_w_3_in_axes3_y - crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
             crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x
-        )
-        crs_d_c_in_axes3_xz = (
-        crs_d_alpha_3_t*crs_h_3_in_spec3_z - crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_x
-        )
-        crs_d_c_in_axes3_yz = (
-        crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_z - crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_y
         )
         # (crs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         crs_c_o_t = (
         inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z + crs_f_2_o_in_axes1_z*crs_r_1_in_axes1_x)
         )
         crs_c_o_in_axes3_x = (
-        crs_h_3_in_spec3_x*(crs_mu_3_o_t_2 + crs_mu_3_o_t_3) -
-            crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y - crs_alpha_1_o_in_axes3_y*crs_h_3_in_spec3_z
-            - crs_c_3*crs_f_2_o_in_axes1_z - crs_c_o_t*crs_s_3
+        crs_c_t - crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y -
+            crs_alpha_1_o_in_axes3_y*crs_h_3_in_spec3_z - crs_c_o_t*crs_h_3_t_13 -
+            crs_e_1_in_axes3_x*crs_f_2_o_in_axes1_z
         )
         crs_c_o_in_axes3_y = (
-        crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z + crs_f_2_o_in_axes1_z*crs_s_3 +
-            crs_h_3_in_spec3_y*(crs_mu_3_o_t + crs_mu_3_o_t_3) -
-            crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_3*crs_c_o_t
+        crs_c_t_2 + crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z +
+            crs_f_2_o_in_axes1_z*crs_h_3_t_13 - crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x -
+            crs_c_o_t*crs_e_1_in_axes3_x
         )
         crs_c_o_in_axes3_z = (
-        crs_h_3_in_spec3_z*(crs_mu_3_o_t + crs_mu_3_o_t_2) -
-            crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x - crs_B_3_o_in_axes3_zy*crs_h_3_in_spec3_y -
-            crs_N_1_o_in_axes1_z*crs_w_1_in_axes3_z
+        crs_c_t_3 - crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x -
+            crs_B_3_o_in_axes3_zy*crs_h_3_in_spec3_y - crs_N_1_o_in_axes1_z*crs_w_1_in_axes3_z
         )
         # (crs-Q) inertia of the leg at the connection point, without the mass gathered there
         crs_Q_t = (
@@ -2273,42 +2254,43 @@ def _run_dynamics(m, X, V):
         crs_Q_t_2 = 0.5*crs_Q_t
         crs_Q_t_3 = (
         crs_d_c_in_axes3_xx + crs_d_Gamma_1_in_axes1_y*crs_w_1_in_axes3_z +
-            crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_y + crs_d_alpha_3_t*crs_h_3_in_spec3_x
+            crs_e_1_in_axes3_x*crs_h_3_in_spec3_y*crs_w_1_in_axes3_z +
+            crs_h_3_in_spec3_x*crs_h_3_t_13*crs_w_1_in_axes3_z
         )
         crs_Q_t_4 = 0.5*crs_Q_t_3
         crs_Q_t_5 = (
-        axis_x_crs_axes3_x*crs_d_c_in_axes3_xy + axis_z_crs_axes3_x*crs_d_c_in_axes3_yz -
-            axis_y_crs_axes3_x*crs_Q_t_2
+        axis_y_crs_axes3_x*crs_Q_t_2 + axis_z_crs_axes3_x*crs_d_G_in_axes3_zy -
+            axis_x_crs_axes3_x*crs_d_c_in_axes3_xy
         )
         crs_Q_t_6 = (
-        axis_x_crs_axes3_y*crs_d_c_in_axes3_xy + axis_z_crs_axes3_y*crs_d_c_in_axes3_yz -
-            axis_y_crs_axes3_y*crs_Q_t_2
+        axis_y_crs_axes3_y*crs_Q_t_2 + axis_z_crs_axes3_y*crs_d_G_in_axes3_zy -
+            axis_x_crs_axes3_y*crs_d_c_in_axes3_xy
         )
         crs_Q_t_7 = (
-        axis_x_crs_axes3_z*crs_d_c_in_axes3_xy + axis_z_crs_axes3_z*crs_d_c_in_axes3_yz -
-            axis_y_crs_axes3_z*crs_Q_t_2
+        axis_y_crs_axes3_z*crs_Q_t_2 + axis_z_crs_axes3_z*crs_d_G_in_axes3_zy -
+            axis_x_crs_axes3_z*crs_d_c_in_axes3_xy
         )
-        crs_Q_t_8 = axis_z_crs_axes3_x*crs_Q_t_4 - axis_x_crs_axes3_x*crs_d_c_in_axes3_xz
-        crs_Q_t_9 = axis_z_crs_axes3_y*crs_Q_t_4 - axis_x_crs_axes3_y*crs_d_c_in_axes3_xz
-        crs_Q_t_10 = axis_z_crs_axes3_z*crs_Q_t_4 - axis_x_crs_axes3_z*crs_d_c_in_axes3_xz
-        crs_Q_t_11 = axis_y_crs_axes3_x*crs_Q_t_5 - axis_z_crs_axes3_x*crs_Q_t_8
-        crs_Q_xx = -2.0*crs_Q_t_11 - crs_d_c_in_axes3_xx
+        crs_Q_t_8 = axis_x_crs_axes3_x*crs_d_G_in_axes3_zx + axis_z_crs_axes3_x*crs_Q_t_4
+        crs_Q_t_9 = axis_x_crs_axes3_y*crs_d_G_in_axes3_zx + axis_z_crs_axes3_y*crs_Q_t_4
+        crs_Q_t_10 = axis_x_crs_axes3_z*crs_d_G_in_axes3_zx + axis_z_crs_axes3_z*crs_Q_t_4
+        crs_Q_t_11 = axis_y_crs_axes3_x*crs_Q_t_5 + axis_z_crs_axes3_x*crs_Q_t_8
+        crs_Q_xx = 2.0*crs_Q_t_11 - crs_d_c_in_axes3_xx
         crs_Q_xy = (
-        axis_z_crs_axes3_x*crs_Q_t_9 + axis_z_crs_axes3_y*crs_Q_t_8 - axis_y_crs_axes3_x*crs_Q_t_6
-            - axis_y_crs_axes3_y*crs_Q_t_5
+        axis_y_crs_axes3_x*crs_Q_t_6 + axis_y_crs_axes3_y*crs_Q_t_5 + axis_z_crs_axes3_x*crs_Q_t_9
+            + axis_z_crs_axes3_y*crs_Q_t_8
         )
         crs_Q_xz = (
-        axis_z_crs_axes3_x*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_8 -
-            axis_y_crs_axes3_x*crs_Q_t_7 - axis_y_crs_axes3_z*crs_Q_t_5
+        axis_y_crs_axes3_x*crs_Q_t_7 + axis_y_crs_axes3_z*crs_Q_t_5 +
+            axis_z_crs_axes3_x*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_8
         )
-        crs_Q_t_12 = axis_y_crs_axes3_y*crs_Q_t_6 - axis_z_crs_axes3_y*crs_Q_t_9
-        crs_Q_yy = -2.0*crs_Q_t_12 - crs_d_c_in_axes3_xx
+        crs_Q_t_12 = axis_y_crs_axes3_y*crs_Q_t_6 + axis_z_crs_axes3_y*crs_Q_t_9
+        crs_Q_yy = 2.0*crs_Q_t_12 - crs_d_c_in_axes3_xx
         crs_Q_yz = (
-        axis_z_crs_axes3_y*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_9 -
-            axis_y_crs_axes3_y*crs_Q_t_7 - axis_y_crs_axes3_z*crs_Q_t_6
+        axis_y_crs_axes3_y*crs_Q_t_7 + axis_y_crs_axes3_z*crs_Q_t_6 +
+            axis_z_crs_axes3_y*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_9
         )
-        crs_Q_t_13 = axis_y_crs_axes3_z*crs_Q_t_7 - axis_z_crs_axes3_z*crs_Q_t_10
-        crs_Q_zz = -2.0*crs_Q_t_13 - crs_d_c_in_axes3_xx
+        crs_Q_t_13 = axis_y_crs_axes3_z*crs_Q_t_7 + axis_z_crs_axes3_z*crs_Q_t_10
+        crs_Q_zz = 2.0*crs_Q_t_13 - crs_d_c_in_axes3_xx
         # (crs-U) velocity and gravity terms of the leg force
         crs_U_x = (
         -axis_x_crs_axes3_x*crs_c_o_in_axes3_x - axis_y_crs_axes3_x*crs_c_o_in_axes3_y -
@@ -2323,21 +2305,21 @@ def _run_dynamics(m, X, V):
             axis_z_crs_axes3_z*crs_c_o_in_axes3_z
         )
         # (M_ta) coupling block of M
-        crs_M_ta_t = -crs_Q_xy*crs_q_z
+        crs_M_ta_t = crs_Q_xy*crs_q_z
         crs_M_ta_t_2 = crs_Q_xz*crs_q_y
-        crs_M_ta_t_3 = crs_M_ta_t + crs_M_ta_t_2
+        crs_M_ta_t_3 = crs_M_ta_t_2 - crs_M_ta_t
         crs_M_ta_t_4 = crs_Q_xx*crs_q_z - crs_Q_xz*crs_q_x
         crs_M_ta_t_5 = crs_Q_xy*crs_q_x - crs_Q_xx*crs_q_y
         crs_M_ta_t_6 = crs_Q_yz*crs_q_y - crs_Q_yy*crs_q_z
         crs_M_ta_t_7 = crs_Q_yz*crs_q_x
-        crs_M_ta_t_8 = crs_M_ta_t + crs_M_ta_t_7
+        crs_M_ta_t_8 = crs_M_ta_t - crs_M_ta_t_7
         crs_M_ta_t_9 = crs_Q_yy*crs_q_x - crs_Q_xy*crs_q_y
         crs_M_ta_t_10 = crs_Q_zz*crs_q_y - crs_Q_yz*crs_q_z
         crs_M_ta_t_11 = crs_Q_xz*crs_q_z - crs_Q_zz*crs_q_x
         crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2
         # (M_aa) rotational block of M
         crs_M_aa_t = crs_M_ta_t_10*crs_q_y - crs_M_ta_t_6*crs_q_z
-        crs_M_aa_t_2 = crs_M_ta_t_11*crs_q_y + crs_M_ta_t_8*crs_q_z
+        crs_M_aa_t_2 = crs_M_ta_t_11*crs_q_y - crs_M_ta_t_8*crs_q_z
         crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_y - crs_M_ta_t_9*crs_q_z
         crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_z - crs_M_ta_t_11*crs_q_x
         crs_M_aa_t_5 = crs_M_ta_t_5*crs_q_z - crs_M_ta_t_12*crs_q_x
@@ -2355,7 +2337,7 @@ def _run_dynamics(m, X, V):
         crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z
         crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x
         ok = (
-        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
+        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
             _TOLERANCE * crs_size)
         )
@@ -2371,7 +2353,7 @@ def _run_dynamics(m, X, V):
         M_ta_crs_xy += crs_M_ta_t_4
         M_ta_crs_xz += crs_M_ta_t_5
         M_ta_crs_yx += crs_M_ta_t_6
-        M_ta_yy += -crs_M_ta_t_8
+        M_ta_yy += crs_M_ta_t_8
         M_ta_crs_yz += crs_M_ta_t_9
         M_ta_crs_zx += crs_M_ta_t_10
         M_ta_crs_zy += crs_M_ta_t_11
@@ -2483,7 +2465,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 555 mul, 423 add, 9 div, 6 sqrt, 0 trig
+# M: 555 mul, 420 add, 9 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2566,7 +2548,7 @@ def _run_M(m, X):
             crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
             inv_crs_size_t,
         ) = k
-        # (crs-S) from the base point to the connection point
+        # (crs-h_3) first moment of link 3 about the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -2576,106 +2558,66 @@ def _run_M(m, X):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_z + t_z - crs_base_point_z
-        crs_S_in_turn1_x = (
-        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
+        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
+        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
+        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
+        crs_h_3_t_4 = (
+        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
+            crs_base_frame_zy*crs_h_3_t_3
         )
-        crs_S_in_turn1_y = (
-        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
+        crs_h_3_t_5 = (
+        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
+            crs_base_frame_zz*crs_h_3_t_3
         )
-        crs_S_in_turn1_z = (
-        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        crs_h_3_t_6 = (
+        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
+            crs_base_frame_zx*crs_h_3_t_3
         )
-        # (crs-rho2_1) squared amplitude
-        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
-        # (crs-root_1) root, with the sign of the branch
-        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
+        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
+        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
+        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
+        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
+        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
+        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_in_axes1_x = (
+        crs_e_1_in_axes3_x*crs_h_3_in_spec3_y + crs_h_3_in_spec3_x*crs_h_3_t_13
+        )
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
+        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
+        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
-        # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
-        # (crs-disc_2) discriminant of the distance equation
-        crs_disc_2 = crs_size_t - crs_rho2_1
-        # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
-        # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
-        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
-        # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_c_3*(crs_c_3*crs_r_1_in_axes1_x - crs_r_1_in_axes1_z*crs_s_3) +
-            crs_s_3*(crs_c_3*crs_r_1_in_axes1_z + crs_r_1_in_axes1_x*crs_s_3)
+        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
+            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
+            + crs_h_3_t_13*crs_r_1_in_axes1_x)
         )
         # (crs-w_1) reciprocal vector 1
-        crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
-        # (crs-w_2) reciprocal vector 2
-        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
-        crs_w_2_t = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
-        crs_w_2_in_axes3_x = crs_c_3 + crs_s_3*crs_w_2_t
-        # (crs-w_3) reciprocal vector 3
-        crs_w_3_in_axes3_x = crs_s_3*inv_crs_d_4_in_axes1_z
-        crs_w_3_in_axes3_y = crs_c_3*inv_crs_d_4_in_axes1_z
-        # (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        crs_d_alpha_3_in_axes3_xz = crs_c_3*crs_w_1_in_axes3_z
-        crs_d_alpha_3_t = crs_s_3*crs_w_1_in_axes3_z
-        # (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        crs_d_Gamma_3_in_axes3_z = (
-        crs_w_1_in_axes3_z*(crs_J_3_in_spec3_xz*crs_c_3 - crs_J_3_in_spec3_yz*crs_s_3)
-        )
-        crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_d_4_in_axes1_z
-        crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*crs_s_3 - crs_h_3_in_spec3_y
-        crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_c_3*crs_d_Gamma_3_t
-        # (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
-        crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
-        crs_d_Gamma_2_in_axes3_y = crs_c_3*crs_d_Gamma_2_t - crs_link2_mass*crs_s_3
-        # (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        crs_d_Gamma_1_in_axes1_y = (
-        crs_c_3*crs_h_3_in_spec3_y + crs_h_3_in_spec3_x*crs_s_3 +
-            crs_w_1_in_axes3_z*(crs_J_2_in_spec1_xx + crs_c_3*(crs_J_3_in_spec3_xx*crs_c_3 -
-            crs_J_3_in_spec3_xy*crs_s_3) - crs_s_3*(crs_J_3_in_spec3_xy*crs_c_3 -
-            crs_J_3_in_spec3_yy*crs_s_3))
-        )
-        # (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        crs_d_c_in_axes3_xx = (
-        crs_h_3_in_spec3_y*crs_w_3_in_axes3_x - crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
-            crs_w_2_in_axes3_x*(crs_c_3*crs_link2_mass + crs_d_Gamma_2_t*crs_s_3)
-        )
-        crs_d_c_in_axes3_xy = (
-        crs_h_3_in_spec3_y*crs_w_3_in_axes3_y - crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
-            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x
-        )
-        crs_d_c_in_axes3_xz = (
-        crs_d_alpha_3_t*crs_h_3_in_spec3_z - crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_x
-        )
-        crs_d_c_in_axes3_yz = (
-        crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_z - crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_y
-        )
-        # (crs-Q) inertia of the leg at the connection point, without the mass gathered there
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
         axis_z_crs_axes3_z = crs_base_frame_zz*crs_c_1 - crs_base_frame_zy*crs_s_1
-        crs_Q_t = crs_c_1*crs_c_3
-        crs_Q_t_2 = crs_c_3*crs_s_1
+        crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
+        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_Q_t*crs_base_frame_xy + crs_Q_t_2*crs_base_frame_xz - crs_base_frame_xx*crs_s_3
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
+            crs_base_frame_xx*crs_h_3_t_13
         )
         axis_y_crs_axes3_y = (
-        crs_Q_t*crs_base_frame_yy + crs_Q_t_2*crs_base_frame_yz - crs_base_frame_yx*crs_s_3
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
+            crs_base_frame_yx*crs_h_3_t_13
         )
         axis_y_crs_axes3_z = (
-        crs_Q_t*crs_base_frame_zy + crs_Q_t_2*crs_base_frame_zz - crs_base_frame_zx*crs_s_3
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
+            crs_base_frame_zx*crs_h_3_t_13
         )
         axis_x_crs_axes3_x = (
         axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
@@ -2686,71 +2628,113 @@ def _run_M(m, X):
         axis_x_crs_axes3_z = (
         axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
         )
-        crs_Q_t_3 = (
-        crs_d_c_in_axes3_xx + crs_d_Gamma_2_in_axes3_y*(crs_c_3*crs_w_2_t - crs_s_3) +
+        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
+        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
+        crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
+        # (crs-w_3) reciprocal vector 3
+        crs_w_3_in_axes3_x = crs_h_3_t_13*inv_crs_d_4_in_axes1_z
+        crs_w_3_in_axes3_y = crs_e_1_in_axes3_x*inv_crs_d_4_in_axes1_z
+        # (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_d_4_in_axes1_z
+        crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*crs_h_3_t_13 - crs_h_3_in_spec3_y
+        crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_d_Gamma_3_t*crs_e_1_in_axes3_x
+        # (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
+        crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
+        crs_d_Gamma_2_in_axes3_y = (
+        crs_d_Gamma_2_t*crs_e_1_in_axes3_x - crs_h_3_t_13*crs_link2_mass
+        )
+        # (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        crs_d_Gamma_1_in_axes1_x = (
+        inv_crs_d_4_in_axes1_z*(crs_J_3_in_spec3_xz*crs_e_1_in_axes3_x -
+            crs_J_3_in_spec3_yz*crs_h_3_t_13) - crs_h_3_in_spec3_z
+        )
+        crs_d_Gamma_1_in_axes1_y = (
+        crs_h_3_in_axes1_x + crs_w_1_in_axes3_z*(crs_J_2_in_spec1_xx +
+            crs_e_1_in_axes3_x*(crs_J_3_in_spec3_xx*crs_e_1_in_axes3_x -
+            crs_J_3_in_spec3_xy*crs_h_3_t_13) -
+            crs_h_3_t_13*(crs_J_3_in_spec3_xy*crs_e_1_in_axes3_x -
+            crs_J_3_in_spec3_yy*crs_h_3_t_13))
+        )
+        # (crs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        crs_d_G_in_axes3_zx = crs_d_Gamma_1_in_axes1_x*crs_h_3_t_13*crs_w_1_in_axes3_z
+        crs_d_G_in_axes3_zy = crs_d_Gamma_1_in_axes1_x*crs_e_1_in_axes3_x*crs_w_1_in_axes3_z
+        # (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        crs_d_c_in_axes3_xx = (
+        crs_h_3_in_spec3_y*crs_w_3_in_axes3_x - crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
+            crs_w_2_in_axes3_x*(crs_d_Gamma_2_t*crs_h_3_t_13 + crs_e_1_in_axes3_x*crs_link2_mass)
+        )
+        crs_d_c_in_axes3_xy = (
+        crs_h_3_in_spec3_y*crs_w_3_in_axes3_y - crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
+            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x
+        )
+        # (crs-Q) inertia of the leg at the connection point, without the mass gathered there
+        crs_Q_t = (
+        crs_d_c_in_axes3_xx + crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_y +
             crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y + crs_h_3_in_spec3_x*crs_w_3_in_axes3_y
+        )
+        crs_Q_t_2 = 0.5*crs_Q_t
+        crs_Q_t_3 = (
+        crs_d_c_in_axes3_xx + crs_d_Gamma_1_in_axes1_y*crs_w_1_in_axes3_z +
+            crs_e_1_in_axes3_x*crs_h_3_in_spec3_y*crs_w_1_in_axes3_z +
+            crs_h_3_in_spec3_x*crs_h_3_t_13*crs_w_1_in_axes3_z
         )
         crs_Q_t_4 = 0.5*crs_Q_t_3
         crs_Q_t_5 = (
-        crs_d_c_in_axes3_xx + crs_d_Gamma_1_in_axes1_y*crs_w_1_in_axes3_z +
-            crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_y + crs_d_alpha_3_t*crs_h_3_in_spec3_x
+        axis_y_crs_axes3_x*crs_Q_t_2 + axis_z_crs_axes3_x*crs_d_G_in_axes3_zy -
+            axis_x_crs_axes3_x*crs_d_c_in_axes3_xy
         )
-        crs_Q_t_6 = 0.5*crs_Q_t_5
+        crs_Q_t_6 = (
+        axis_y_crs_axes3_y*crs_Q_t_2 + axis_z_crs_axes3_y*crs_d_G_in_axes3_zy -
+            axis_x_crs_axes3_y*crs_d_c_in_axes3_xy
+        )
         crs_Q_t_7 = (
-        axis_x_crs_axes3_x*crs_d_c_in_axes3_xy + axis_z_crs_axes3_x*crs_d_c_in_axes3_yz -
-            axis_y_crs_axes3_x*crs_Q_t_4
+        axis_y_crs_axes3_z*crs_Q_t_2 + axis_z_crs_axes3_z*crs_d_G_in_axes3_zy -
+            axis_x_crs_axes3_z*crs_d_c_in_axes3_xy
         )
-        crs_Q_t_8 = (
-        axis_x_crs_axes3_y*crs_d_c_in_axes3_xy + axis_z_crs_axes3_y*crs_d_c_in_axes3_yz -
-            axis_y_crs_axes3_y*crs_Q_t_4
-        )
-        crs_Q_t_9 = (
-        axis_x_crs_axes3_z*crs_d_c_in_axes3_xy + axis_z_crs_axes3_z*crs_d_c_in_axes3_yz -
-            axis_y_crs_axes3_z*crs_Q_t_4
-        )
-        crs_Q_t_10 = axis_z_crs_axes3_x*crs_Q_t_6 - axis_x_crs_axes3_x*crs_d_c_in_axes3_xz
-        crs_Q_t_11 = axis_z_crs_axes3_y*crs_Q_t_6 - axis_x_crs_axes3_y*crs_d_c_in_axes3_xz
-        crs_Q_t_12 = axis_z_crs_axes3_z*crs_Q_t_6 - axis_x_crs_axes3_z*crs_d_c_in_axes3_xz
-        crs_Q_t_13 = axis_y_crs_axes3_x*crs_Q_t_7 - axis_z_crs_axes3_x*crs_Q_t_10
-        crs_Q_xx = -2.0*crs_Q_t_13 - crs_d_c_in_axes3_xx
+        crs_Q_t_8 = axis_x_crs_axes3_x*crs_d_G_in_axes3_zx + axis_z_crs_axes3_x*crs_Q_t_4
+        crs_Q_t_9 = axis_x_crs_axes3_y*crs_d_G_in_axes3_zx + axis_z_crs_axes3_y*crs_Q_t_4
+        crs_Q_t_10 = axis_x_crs_axes3_z*crs_d_G_in_axes3_zx + axis_z_crs_axes3_z*crs_Q_t_4
+        crs_Q_t_11 = axis_y_crs_axes3_x*crs_Q_t_5 + axis_z_crs_axes3_x*crs_Q_t_8
+        crs_Q_xx = 2.0*crs_Q_t_11 - crs_d_c_in_axes3_xx
         crs_Q_xy = (
-        axis_z_crs_axes3_x*crs_Q_t_11 + axis_z_crs_axes3_y*crs_Q_t_10 -
-            axis_y_crs_axes3_x*crs_Q_t_8 - axis_y_crs_axes3_y*crs_Q_t_7
+        axis_y_crs_axes3_x*crs_Q_t_6 + axis_y_crs_axes3_y*crs_Q_t_5 + axis_z_crs_axes3_x*crs_Q_t_9
+            + axis_z_crs_axes3_y*crs_Q_t_8
         )
         crs_Q_xz = (
-        axis_z_crs_axes3_x*crs_Q_t_12 + axis_z_crs_axes3_z*crs_Q_t_10 -
-            axis_y_crs_axes3_x*crs_Q_t_9 - axis_y_crs_axes3_z*crs_Q_t_7
+        axis_y_crs_axes3_x*crs_Q_t_7 + axis_y_crs_axes3_z*crs_Q_t_5 +
+            axis_z_crs_axes3_x*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_8
         )
-        crs_Q_t_14 = axis_y_crs_axes3_y*crs_Q_t_8 - axis_z_crs_axes3_y*crs_Q_t_11
-        crs_Q_yy = -2.0*crs_Q_t_14 - crs_d_c_in_axes3_xx
+        crs_Q_t_12 = axis_y_crs_axes3_y*crs_Q_t_6 + axis_z_crs_axes3_y*crs_Q_t_9
+        crs_Q_yy = 2.0*crs_Q_t_12 - crs_d_c_in_axes3_xx
         crs_Q_yz = (
-        axis_z_crs_axes3_y*crs_Q_t_12 + axis_z_crs_axes3_z*crs_Q_t_11 -
-            axis_y_crs_axes3_y*crs_Q_t_9 - axis_y_crs_axes3_z*crs_Q_t_8
+        axis_y_crs_axes3_y*crs_Q_t_7 + axis_y_crs_axes3_z*crs_Q_t_6 +
+            axis_z_crs_axes3_y*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_9
         )
-        crs_Q_t_15 = axis_y_crs_axes3_z*crs_Q_t_9 - axis_z_crs_axes3_z*crs_Q_t_12
-        crs_Q_zz = -2.0*crs_Q_t_15 - crs_d_c_in_axes3_xx
+        crs_Q_t_13 = axis_y_crs_axes3_z*crs_Q_t_7 + axis_z_crs_axes3_z*crs_Q_t_10
+        crs_Q_zz = 2.0*crs_Q_t_13 - crs_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        crs_M_ta_t = -crs_Q_xy*crs_q_z
+        crs_M_ta_t = crs_Q_xy*crs_q_z
         crs_M_ta_t_2 = crs_Q_xz*crs_q_y
-        crs_M_ta_t_3 = crs_M_ta_t + crs_M_ta_t_2
+        crs_M_ta_t_3 = crs_M_ta_t_2 - crs_M_ta_t
         crs_M_ta_t_4 = crs_Q_xx*crs_q_z - crs_Q_xz*crs_q_x
         crs_M_ta_t_5 = crs_Q_xy*crs_q_x - crs_Q_xx*crs_q_y
         crs_M_ta_t_6 = crs_Q_yz*crs_q_y - crs_Q_yy*crs_q_z
         crs_M_ta_t_7 = crs_Q_yz*crs_q_x
-        crs_M_ta_t_8 = crs_M_ta_t + crs_M_ta_t_7
+        crs_M_ta_t_8 = crs_M_ta_t - crs_M_ta_t_7
         crs_M_ta_t_9 = crs_Q_yy*crs_q_x - crs_Q_xy*crs_q_y
         crs_M_ta_t_10 = crs_Q_zz*crs_q_y - crs_Q_yz*crs_q_z
         crs_M_ta_t_11 = crs_Q_xz*crs_q_z - crs_Q_zz*crs_q_x
         crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2
         # (M_aa) rotational block of M
         crs_M_aa_t = crs_M_ta_t_10*crs_q_y - crs_M_ta_t_6*crs_q_z
-        crs_M_aa_t_2 = crs_M_ta_t_11*crs_q_y + crs_M_ta_t_8*crs_q_z
+        crs_M_aa_t_2 = crs_M_ta_t_11*crs_q_y - crs_M_ta_t_8*crs_q_z
         crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_y - crs_M_ta_t_9*crs_q_z
         crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_z - crs_M_ta_t_11*crs_q_x
         crs_M_aa_t_5 = crs_M_ta_t_5*crs_q_z - crs_M_ta_t_12*crs_q_x
         crs_M_aa_t_6 = crs_M_ta_t_9*crs_q_x - crs_M_ta_t_5*crs_q_y
         ok = (
-        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
+        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
             _TOLERANCE * crs_size)
         )
@@ -2766,7 +2750,7 @@ def _run_M(m, X):
         M_ta_crs_xy += crs_M_ta_t_4
         M_ta_crs_xz += crs_M_ta_t_5
         M_ta_crs_yx += crs_M_ta_t_6
-        M_ta_yy += -crs_M_ta_t_8
+        M_ta_yy += crs_M_ta_t_8
         M_ta_crs_yz += crs_M_ta_t_9
         M_ta_crs_zx += crs_M_ta_t_10
         M_ta_crs_zy += crs_M_ta_t_11
@@ -2838,14 +2822,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 669 mul, 501 add, 9 div, 6 sqrt, 0 trig
+# Z: 678 mul, 507 add, 9 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2901,6 +2885,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2909,39 +2909,12 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_crs_x, Z_t_crs_y, Z_t_crs_z, Z_a_crs_x, Z_a_crs_y, Z_a_crs_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -2956,7 +2929,7 @@ def _run_Z(m, X, V):
             crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
             crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (crs-S) from the base point to the connection point
+        # (crs-h_3) first moment of link 3 about the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -2966,39 +2939,34 @@ def _run_Z(m, X, V):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_z + t_z - crs_base_point_z
-        crs_S_in_turn1_x = (
-        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
+        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
+        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
+        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
+        crs_h_3_t_4 = (
+        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
+            crs_base_frame_zy*crs_h_3_t_3
         )
-        crs_S_in_turn1_y = (
-        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
+        crs_h_3_t_5 = (
+        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
+            crs_base_frame_zz*crs_h_3_t_3
         )
-        crs_S_in_turn1_z = (
-        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        crs_h_3_t_6 = (
+        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
+            crs_base_frame_zx*crs_h_3_t_3
         )
-        # (crs-rho2_1) squared amplitude
-        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
-        # (crs-root_1) root, with the sign of the branch
-        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
+        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
+        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
+        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
+        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
+        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
+        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
+        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
+        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
-        # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
-        # (crs-disc_2) discriminant of the distance equation
-        crs_disc_2 = crs_size_t - crs_rho2_1
-        # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
-        # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
-        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
-        # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-S_dot) velocity of the connection point
         crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
         crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
@@ -3007,16 +2975,45 @@ def _run_Z(m, X, V):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_c_3*(crs_c_3*crs_r_1_in_axes1_x - crs_r_1_in_axes1_z*crs_s_3) +
-            crs_s_3*(crs_c_3*crs_r_1_in_axes1_z + crs_r_1_in_axes1_x*crs_s_3)
+        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
+            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
+            + crs_h_3_t_13*crs_r_1_in_axes1_x)
         )
         # (crs-w_1) reciprocal vector 1
+        axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
+        axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
+        axis_z_crs_axes3_z = crs_base_frame_zz*crs_c_1 - crs_base_frame_zy*crs_s_1
         crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
+        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
+        axis_y_crs_axes3_x = (
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
+            crs_base_frame_xx*crs_h_3_t_13
+        )
+        axis_y_crs_axes3_y = (
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
+            crs_base_frame_yx*crs_h_3_t_13
+        )
+        axis_y_crs_axes3_z = (
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
+            crs_base_frame_zx*crs_h_3_t_13
+        )
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
+        )
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_z*axis_z_crs_axes3_x - axis_y_crs_axes3_x*axis_z_crs_axes3_z
+        )
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
+        )
+        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
         # (crs-qd_1) rate of joint 1
         crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
@@ -3028,43 +3025,19 @@ def _run_Z(m, X, V):
         )
         crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
         # (crs-qd_2) rate of joint 2
-        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
         crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
         crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_in_axes3_x = crs_c_3*crs_qd_1
-        crs_omega_1_in_axes3_y = -crs_qd_1*crs_s_3
+        crs_omega_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qd_1
+        crs_omega_1_in_axes3_y = -crs_h_3_t_13*crs_qd_1
         # (crs-W_3) centripetal tensor of link 3
         crs_W_3_in_axes3_yz = crs_omega_1_in_axes3_y*crs_qd_2_t
         crs_W_3_in_axes3_xz = crs_omega_1_in_axes3_x*crs_qd_2_t
         crs_W_3_in_axes3_xy = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_y
         # (crs-u_1) centripetal acceleration of the connection point
-        axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
-        axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
-        axis_z_crs_axes3_z = crs_base_frame_zz*crs_c_1 - crs_base_frame_zy*crs_s_1
-        crs_u_1_t = crs_c_1*crs_c_3
-        crs_u_1_t_2 = crs_c_3*crs_s_1
-        axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_u_1_t + crs_base_frame_xz*crs_u_1_t_2 - crs_base_frame_xx*crs_s_3
-        )
-        axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_u_1_t + crs_base_frame_yz*crs_u_1_t_2 - crs_base_frame_yx*crs_s_3
-        )
-        axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_u_1_t + crs_base_frame_zz*crs_u_1_t_2 - crs_base_frame_zx*crs_s_3
-        )
-        axis_x_crs_axes3_x = (
-        axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
-        )
-        axis_x_crs_axes3_y = (
-        axis_y_crs_axes3_z*axis_z_crs_axes3_x - axis_y_crs_axes3_x*axis_z_crs_axes3_z
-        )
-        axis_x_crs_axes3_z = (
-        axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
-        )
         crs_u_1_x = crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
         crs_u_1_y = crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
         crs_u_1_z = crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
@@ -3079,8 +3052,9 @@ def _run_Z(m, X, V):
         )
         # (crs-bias) acceleration of the connection point at zero joint accelerations
         crs_bias_t = (
-        crs_omega_1_in_axes3_x*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3) +
-            crs_omega_1_in_axes3_y*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2)
+        crs_omega_1_in_axes3_x*(crs_h_3_t_11*crs_h_3_t_13 + crs_h_3_t_13*crs_joint3_offset_x) +
+            crs_omega_1_in_axes3_y*(crs_e_1_in_axes3_x*crs_h_3_t_11 +
+            crs_e_1_in_axes3_x*crs_joint3_offset_x)
         )
         crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
         crs_bias_t_3 = -crs_omega_1_in_axes3_y*crs_platform_joint_offset_x
@@ -3093,7 +3067,8 @@ def _run_Z(m, X, V):
         )
         crs_bias_in_axes3_z = (
         crs_W_3_in_axes3_xz*crs_platform_joint_offset_x + crs_bias_t_2*crs_omega_1_in_axes3_x -
-            2.0*crs_qd_2*(crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*crs_s_3)
+            2.0*crs_qd_2*(crs_e_1_in_axes3_x*crs_omega_1_in_axes3_y +
+            crs_h_3_t_13*crs_omega_1_in_axes3_x)
         )
         # (crs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - crs_bias_in_axes3_x
@@ -3103,11 +3078,12 @@ def _run_Z(m, X, V):
         crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_3_o) remainder of: acceleration of joint 3
         crs_qdd_3_o = (
-        inv_crs_d_4_in_axes1_z*(crs_c_3*crs_rel_o_in_axes3_y + crs_rel_o_in_axes3_x*crs_s_3)
+        inv_crs_d_4_in_axes1_z*(crs_e_1_in_axes3_x*crs_rel_o_in_axes3_y +
+            crs_h_3_t_13*crs_rel_o_in_axes3_x)
         )
         # (crs-alpha_1_o) remainder of: angular acceleration of link 1
-        crs_alpha_1_o_in_axes3_x = crs_c_3*crs_qdd_1_o
-        crs_alpha_1_o_in_axes3_y = -crs_qdd_1_o*crs_s_3
+        crs_alpha_1_o_in_axes3_x = crs_e_1_in_axes3_x*crs_qdd_1_o
+        crs_alpha_1_o_in_axes3_y = -crs_h_3_t_13*crs_qdd_1_o
         # (crs-alpha_3_o) remainder of: angular acceleration of link 3
         crs_alpha_3_o_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x
         crs_alpha_3_o_in_axes3_y = crs_alpha_1_o_in_axes3_y - crs_W_3_in_axes3_xz
@@ -3118,28 +3094,31 @@ def _run_Z(m, X, V):
         crs_B_3_o_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x
         # (crs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         crs_acc_2_o_in_axes1_z = (
-        crs_c_3*crs_rel_o_in_axes3_x + crs_qdd_3_o*crs_r_1_in_axes1_x - crs_g_in_axes1_z -
-            crs_rel_o_in_axes3_y*crs_s_3
+        crs_e_1_in_axes3_x*crs_rel_o_in_axes3_x + crs_qdd_3_o*crs_r_1_in_axes1_x -
+            crs_g_in_axes1_z - crs_h_3_t_13*crs_rel_o_in_axes3_y
         )
         # (crs-f_2_o) remainder of: inertia force of link 2 less its weight
         crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass
-        # (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        # (crs-acc_3) acceleration of the reference point of link 3, less gravity
         crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
         crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
-        crs_acc_3_o_in_axes3_x = (
-        crs_u_1_in_axes3_x - crs_c_3*crs_g_in_axes1_z - crs_g_in_axes1_x*crs_s_3
-        )
-        crs_acc_3_o_in_axes3_y = (
-        crs_u_1_in_axes3_y + crs_g_in_axes1_z*crs_s_3 - crs_c_3*crs_g_in_axes1_x
-        )
+        crs_g_in_axes3_x = crs_e_1_in_axes3_x*crs_g_in_axes1_z + crs_g_in_axes1_x*crs_h_3_t_13
+        crs_g_in_axes3_y = crs_e_1_in_axes3_x*crs_g_in_axes1_x - crs_g_in_axes1_z*crs_h_3_t_13
+        # (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x - crs_g_in_axes3_x
+        crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y - crs_g_in_axes3_y
         crs_acc_3_o_in_axes3_z = crs_u_1_in_axes3_z - crs_g_in_axes1_y
+        # (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        crs_mu_3_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x
+        crs_mu_3_t_2 = crs_omega_1_in_axes3_y*crs_omega_1_in_axes3_y
+        crs_mu_3_t_3 = crs_qd_2_t*crs_qd_2_t
+        crs_mu_3_t_4 = crs_J_3_in_spec3_yz*(crs_mu_3_t_2 - crs_mu_3_t_3)
+        crs_mu_3_t_5 = crs_J_3_in_spec3_xz*(crs_mu_3_t - crs_mu_3_t_3)
+        crs_mu_3_t_6 = crs_J_3_in_spec3_xy*(crs_mu_3_t - crs_mu_3_t_2)
         # (crs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        crs_mu_3_o_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x
-        crs_mu_3_o_t_2 = crs_omega_1_in_axes3_y*crs_omega_1_in_axes3_y
-        crs_mu_3_o_t_3 = crs_qd_2_t*crs_qd_2_t
         crs_mu_3_o_in_axes3_x = (
-        crs_B_3_o_in_axes3_yx*crs_J_3_in_spec3_xz + crs_B_3_o_in_axes3_zy*crs_Sigma_3_in_axes3_yy
-            + crs_J_3_in_spec3_yz*(crs_mu_3_o_t_2 - crs_mu_3_o_t_3) +
+        crs_mu_3_t_4 + crs_B_3_o_in_axes3_yx*crs_J_3_in_spec3_xz +
+            crs_B_3_o_in_axes3_zy*crs_Sigma_3_in_axes3_yy +
             crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_in_axes3_x +
             crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_o_in_axes3_zx*crs_J_3_in_spec3_xy
             - crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_z
@@ -3147,45 +3126,49 @@ def _run_Z(m, X, V):
         crs_mu_3_o_in_axes3_y = (
         crs_B_3_o_in_axes3_zy*crs_J_3_in_spec3_xy +
             crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_in_axes3_y +
-            crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_z - crs_B_3_o_in_axes3_xy*crs_J_3_in_spec3_yz
-            - crs_B_3_o_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_o_t -
-            crs_mu_3_o_t_3) - crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_x
+            crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_z - crs_mu_3_t_5 -
+            crs_B_3_o_in_axes3_xy*crs_J_3_in_spec3_yz -
+            crs_B_3_o_in_axes3_zx*crs_Sigma_3_in_axes3_xx -
+            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_x
         )
         crs_mu_3_o_in_axes3_z = (
-        crs_B_3_o_in_axes3_yx*crs_Sigma_3_in_axes3_xx + crs_J_3_in_spec3_xy*(crs_mu_3_o_t -
-            crs_mu_3_o_t_2) + crs_J_3_in_spec3_xz*crs_alpha_1_o_in_axes3_x +
+        crs_mu_3_t_6 + crs_B_3_o_in_axes3_yx*crs_Sigma_3_in_axes3_xx +
+            crs_J_3_in_spec3_xz*crs_alpha_1_o_in_axes3_x +
             crs_J_3_in_spec3_yz*crs_alpha_1_o_in_axes3_y +
             crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_x -
             crs_B_3_o_in_axes3_xy*crs_Sigma_3_in_axes3_yy -
             crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_y
         )
+        # (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        crs_mu_1_t = crs_g_in_axes1_y*crs_h_2_in_spec1_y - crs_g_in_axes1_x*crs_h_2_in_spec1_z
         # (crs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        crs_mu_1_o_in_axes1_z = (
-        crs_J_2_in_spec1_xx*crs_qdd_1_o + crs_g_in_axes1_x*crs_h_2_in_spec1_z -
-            crs_g_in_axes1_y*crs_h_2_in_spec1_y
-        )
+        crs_mu_1_o_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1_o - crs_mu_1_t
         # (crs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         crs_N_1_o_in_axes1_z = (
-        crs_mu_1_o_in_axes1_z + crs_c_3*crs_mu_3_o_in_axes3_x - crs_mu_3_o_in_axes3_y*crs_s_3
+        crs_mu_1_o_in_axes1_z + crs_e_1_in_axes3_x*crs_mu_3_o_in_axes3_x -
+            crs_h_3_t_13*crs_mu_3_o_in_axes3_y
         )
+        # (crs-c) leg force on the platform without actuation and without the mass at the connection point
+        crs_c_t = crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3)
+        crs_c_t_2 = crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3)
+        crs_c_t_3 = crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2)
         # (crs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         crs_c_o_t = (
         inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z + crs_f_2_o_in_axes1_z*crs_r_1_in_axes1_x)
         )
         crs_c_o_in_axes3_x = (
-        crs_h_3_in_spec3_x*(crs_mu_3_o_t_2 + crs_mu_3_o_t_3) -
-            crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y - crs_alpha_1_o_in_axes3_y*crs_h_3_in_spec3_z
-            - crs_c_3*crs_f_2_o_in_axes1_z - crs_c_o_t*crs_s_3
+        crs_c_t - crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y -
+            crs_alpha_1_o_in_axes3_y*crs_h_3_in_spec3_z - crs_c_o_t*crs_h_3_t_13 -
+            crs_e_1_in_axes3_x*crs_f_2_o_in_axes1_z
         )
         crs_c_o_in_axes3_y = (
-        crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z + crs_f_2_o_in_axes1_z*crs_s_3 +
-            crs_h_3_in_spec3_y*(crs_mu_3_o_t + crs_mu_3_o_t_3) -
-            crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_3*crs_c_o_t
+        crs_c_t_2 + crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z +
+            crs_f_2_o_in_axes1_z*crs_h_3_t_13 - crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x -
+            crs_c_o_t*crs_e_1_in_axes3_x
         )
         crs_c_o_in_axes3_z = (
-        crs_h_3_in_spec3_z*(crs_mu_3_o_t + crs_mu_3_o_t_2) -
-            crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x - crs_B_3_o_in_axes3_zy*crs_h_3_in_spec3_y -
-            crs_N_1_o_in_axes1_z*crs_w_1_in_axes3_z
+        crs_c_t_3 - crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x -
+            crs_B_3_o_in_axes3_zy*crs_h_3_in_spec3_y - crs_N_1_o_in_axes1_z*crs_w_1_in_axes3_z
         )
         # (crs-U) velocity and gravity terms of the leg force
         crs_U_x = (
@@ -3205,7 +3188,7 @@ def _run_Z(m, X, V):
         crs_Z_a_t_2 = crs_U_x*crs_q_z - crs_U_z*crs_q_x
         crs_Z_a_t_3 = crs_U_y*crs_q_x - crs_U_x*crs_q_y
         ok = (
-        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
+        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
             _TOLERANCE * crs_size)
         )
@@ -3236,7 +3219,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 252 mul, 156 add, 9 div, 6 sqrt, 0 trig
+# H: 255 mul, 156 add, 9 div, 6 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -3286,7 +3269,7 @@ def _run_H(m, X):
             crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
             inv_crs_size_t,
         ) = k
-        # (crs-S) from the base point to the connection point
+        # (crs-h_3) first moment of link 3 about the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -3296,47 +3279,43 @@ def _run_H(m, X):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_z + t_z - crs_base_point_z
-        crs_S_in_turn1_x = (
-        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
+        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
+        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
+        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
+        crs_h_3_t_4 = (
+        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
+            crs_base_frame_zy*crs_h_3_t_3
         )
-        crs_S_in_turn1_y = (
-        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
+        crs_h_3_t_5 = (
+        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
+            crs_base_frame_zz*crs_h_3_t_3
         )
-        crs_S_in_turn1_z = (
-        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        crs_h_3_t_6 = (
+        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
+            crs_base_frame_zx*crs_h_3_t_3
         )
-        # (crs-rho2_1) squared amplitude
-        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
-        # (crs-root_1) root, with the sign of the branch
-        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
+        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
+        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
+        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
+        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
+        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
+        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
+        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
+        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
-        # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
-        # (crs-disc_2) discriminant of the distance equation
-        crs_disc_2 = crs_size_t - crs_rho2_1
-        # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
-        # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
-        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
-        # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_c_3*(crs_c_3*crs_r_1_in_axes1_x - crs_r_1_in_axes1_z*crs_s_3) +
-            crs_s_3*(crs_c_3*crs_r_1_in_axes1_z + crs_r_1_in_axes1_x*crs_s_3)
+        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
+            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
+            + crs_h_3_t_13*crs_r_1_in_axes1_x)
         )
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
@@ -3347,35 +3326,36 @@ def _run_H(m, X):
         crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
         crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_c_1*crs_c_3
-        crs_w_2_t_2 = crs_c_3*crs_s_1
+        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
+        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
+            crs_base_frame_xx*crs_h_3_t_13
         )
         axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
+            crs_base_frame_yx*crs_h_3_t_13
         )
         axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
+            crs_base_frame_zx*crs_h_3_t_13
         )
-        crs_w_2_t_3 = crs_r_1_in_axes1_x/crs_d_4_in_axes1_z
-        crs_w_2_in_axes3_x = crs_c_3 + crs_s_3*crs_w_2_t_3
-        crs_w_2_in_axes3_y = crs_c_3*crs_w_2_t_3 - crs_s_3
-        crs_w_2_x = (
-        axis_y_crs_axes3_x*crs_w_2_in_axes3_y +
-            crs_w_2_in_axes3_x*(axis_y_crs_axes3_y*axis_z_crs_axes3_z -
-            axis_y_crs_axes3_z*axis_z_crs_axes3_y)
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
         )
-        crs_w_2_y = (
-        axis_y_crs_axes3_y*crs_w_2_in_axes3_y +
-            crs_w_2_in_axes3_x*(axis_y_crs_axes3_z*axis_z_crs_axes3_x -
-            axis_y_crs_axes3_x*axis_z_crs_axes3_z)
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_z*axis_z_crs_axes3_x - axis_y_crs_axes3_x*axis_z_crs_axes3_z
         )
-        crs_w_2_z = (
-        axis_y_crs_axes3_z*crs_w_2_in_axes3_y +
-            crs_w_2_in_axes3_x*(axis_y_crs_axes3_x*axis_z_crs_axes3_y -
-            axis_y_crs_axes3_y*axis_z_crs_axes3_x)
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
         )
+        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
+        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
+        crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
+        crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
+        crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
+        crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
         # (crs-H_a_1) moment of the column's unit force about the platform origin
         crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y
         crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z
@@ -3385,7 +3365,7 @@ def _run_H(m, X):
         crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z
         crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x
         ok = (
-        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
+        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
             _TOLERANCE * crs_size)
         )
@@ -3408,7 +3388,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 783 mul, 588 add, 9 div, 6 sqrt, 0 trig
+# required: 774 mul, 579 add, 9 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3482,9 +3462,22 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -3497,21 +3490,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
-        f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
-        f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
-        f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*m_star - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -3566,7 +3547,7 @@ def _run_required(m, X, V, A):
             crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
             crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (crs-S) from the base point to the connection point
+        # (crs-h_3) first moment of link 3 about the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -3576,39 +3557,34 @@ def _run_required(m, X, V, A):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_z + t_z - crs_base_point_z
-        crs_S_in_turn1_x = (
-        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
+        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
+        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
+        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
+        crs_h_3_t_4 = (
+        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
+            crs_base_frame_zy*crs_h_3_t_3
         )
-        crs_S_in_turn1_y = (
-        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
+        crs_h_3_t_5 = (
+        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
+            crs_base_frame_zz*crs_h_3_t_3
         )
-        crs_S_in_turn1_z = (
-        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        crs_h_3_t_6 = (
+        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
+            crs_base_frame_zx*crs_h_3_t_3
         )
-        # (crs-rho2_1) squared amplitude
-        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
-        # (crs-root_1) root, with the sign of the branch
-        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
+        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
+        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
+        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
+        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
+        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
+        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
+        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
+        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
-        # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
-        # (crs-disc_2) discriminant of the distance equation
-        crs_disc_2 = crs_size_t - crs_rho2_1
-        # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
-        # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
-        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
-        # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-S_dot) velocity of the connection point
         crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
         crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
@@ -3617,13 +3593,14 @@ def _run_required(m, X, V, A):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_c_3*(crs_c_3*crs_r_1_in_axes1_x - crs_r_1_in_axes1_z*crs_s_3) +
-            crs_s_3*(crs_c_3*crs_r_1_in_axes1_z + crs_r_1_in_axes1_x*crs_s_3)
+        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
+            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
+            + crs_h_3_t_13*crs_r_1_in_axes1_x)
         )
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
@@ -3634,16 +3611,19 @@ def _run_required(m, X, V, A):
         crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
         crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_c_1*crs_c_3
-        crs_w_2_t_2 = crs_c_3*crs_s_1
+        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
+        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
+            crs_base_frame_xx*crs_h_3_t_13
         )
         axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
+            crs_base_frame_yx*crs_h_3_t_13
         )
         axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
+            crs_base_frame_zx*crs_h_3_t_13
         )
         axis_x_crs_axes3_x = (
         axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
@@ -3656,8 +3636,8 @@ def _run_required(m, X, V, A):
         )
         inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
         crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
-        crs_w_2_in_axes3_x = crs_c_3 + crs_s_3*crs_w_2_t_3
-        crs_w_2_in_axes3_y = crs_c_3*crs_w_2_t_3 - crs_s_3
+        crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
         crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
         crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
         crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
@@ -3678,20 +3658,16 @@ def _run_required(m, X, V, A):
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_in_axes3_x = crs_c_3*crs_qd_1
-        crs_omega_1_in_axes3_y = -crs_qd_1*crs_s_3
+        crs_omega_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qd_1
+        crs_omega_1_in_axes3_y = -crs_h_3_t_13*crs_qd_1
         # (crs-W_3) centripetal tensor of link 3
         crs_W_3_in_axes3_yz = crs_omega_1_in_axes3_y*crs_qd_2_t
         crs_W_3_in_axes3_xz = crs_omega_1_in_axes3_x*crs_qd_2_t
         crs_W_3_in_axes3_xy = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_y
-        # (crs-a_p) acceleration of the connection point without its centripetal part
-        crs_a_p_x = t_ddot_x + alpha_y*crs_q_z - alpha_z*crs_q_y
-        crs_a_p_y = t_ddot_y + alpha_z*crs_q_x - alpha_x*crs_q_z
-        crs_a_p_z = t_ddot_z + alpha_x*crs_q_y - alpha_y*crs_q_x
         # (crs-S_ddot) acceleration of the connection point
-        crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
-        crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
-        crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
+        crs_S_ddot_x = t_ddot_x + B_p_xy*crs_q_y + B_p_xz*crs_q_z - W_p_t_4*crs_q_x
+        crs_S_ddot_y = t_ddot_y + B_p_yx*crs_q_x + B_p_yz*crs_q_z - W_p_t_5*crs_q_y
+        crs_S_ddot_z = t_ddot_z + B_p_zx*crs_q_x + B_p_zy*crs_q_y - W_p_t_6*crs_q_z
         crs_S_ddot_in_axes3_x = (
         axis_x_crs_axes3_x*crs_S_ddot_x + axis_x_crs_axes3_y*crs_S_ddot_y +
             axis_x_crs_axes3_z*crs_S_ddot_z
@@ -3706,8 +3682,9 @@ def _run_required(m, X, V, A):
         )
         # (crs-bias) acceleration of the connection point at zero joint accelerations
         crs_bias_t = (
-        crs_omega_1_in_axes3_x*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3) +
-            crs_omega_1_in_axes3_y*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2)
+        crs_omega_1_in_axes3_x*(crs_h_3_t_11*crs_h_3_t_13 + crs_h_3_t_13*crs_joint3_offset_x) +
+            crs_omega_1_in_axes3_y*(crs_e_1_in_axes3_x*crs_h_3_t_11 +
+            crs_e_1_in_axes3_x*crs_joint3_offset_x)
         )
         crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
         crs_bias_t_3 = -crs_omega_1_in_axes3_y*crs_platform_joint_offset_x
@@ -3720,7 +3697,8 @@ def _run_required(m, X, V, A):
         )
         crs_bias_in_axes3_z = (
         crs_W_3_in_axes3_xz*crs_platform_joint_offset_x + crs_bias_t_2*crs_omega_1_in_axes3_x -
-            2.0*crs_qd_2*(crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*crs_s_3)
+            2.0*crs_qd_2*(crs_e_1_in_axes3_x*crs_omega_1_in_axes3_y +
+            crs_h_3_t_13*crs_omega_1_in_axes3_x)
         )
         # (crs-rel) acceleration of the connection point left to the joint accelerations
         crs_rel_in_axes3_x = crs_S_ddot_in_axes3_x - crs_bias_in_axes3_x
@@ -3728,86 +3706,90 @@ def _run_required(m, X, V, A):
         crs_rel_in_axes3_z = crs_S_ddot_in_axes3_z - crs_bias_in_axes3_z
         # (crs-qdd_1) acceleration of joint 1
         crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z
-        # (crs-qdd_3) acceleration of joint 3
-        crs_qdd_3 = (
-        inv_crs_d_4_in_axes1_z*(crs_c_3*crs_rel_in_axes3_y + crs_rel_in_axes3_x*crs_s_3)
+        # (crs-qdd_2) acceleration of joint 2
+        crs_qdd_2_t = (
+        inv_crs_d_4_in_axes1_z*(crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
+            crs_h_3_t_13*crs_rel_in_axes3_x)
+        )
+        crs_qdd_2 = (
+        crs_e_1_in_axes3_x*crs_rel_in_axes3_x + crs_qdd_2_t*crs_r_1_in_axes1_x -
+            crs_h_3_t_13*crs_rel_in_axes3_y
         )
         # (crs-alpha_1) angular acceleration of link 1
-        crs_alpha_1_in_axes3_x = crs_c_3*crs_qdd_1
-        crs_alpha_1_in_axes3_y = -crs_qdd_1*crs_s_3
+        crs_alpha_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qdd_1
+        crs_alpha_1_in_axes3_y = -crs_h_3_t_13*crs_qdd_1
         # (crs-alpha_3) angular acceleration of link 3
         crs_alpha_3_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_in_axes3_x
         crs_alpha_3_in_axes3_y = crs_alpha_1_in_axes3_y - crs_W_3_in_axes3_xz
         # (crs-B_3) acceleration tensor of link 3
-        crs_B_3_in_axes3_xy = crs_W_3_in_axes3_xy - crs_qdd_3
-        crs_B_3_in_axes3_yx = crs_W_3_in_axes3_xy + crs_qdd_3
+        crs_B_3_in_axes3_xy = crs_W_3_in_axes3_xy - crs_qdd_2_t
+        crs_B_3_in_axes3_yx = crs_W_3_in_axes3_xy + crs_qdd_2_t
         crs_B_3_in_axes3_zx = crs_W_3_in_axes3_xz - crs_alpha_3_in_axes3_y
         crs_B_3_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_in_axes3_x
         # (crs-acc_2) acceleration of the reference point of link 2, less gravity
-        crs_acc_2_in_axes1_z = (
-        crs_c_3*crs_rel_in_axes3_x + crs_qdd_3*crs_r_1_in_axes1_x - crs_g_in_axes1_z -
-            crs_rel_in_axes3_y*crs_s_3
-        )
+        crs_acc_2_in_axes1_z = crs_qdd_2 - crs_g_in_axes1_z
         # (crs-f_2) inertia force of link 2 less its weight
         crs_f_2_in_axes1_z = crs_acc_2_in_axes1_z*crs_link2_mass
         # (crs-acc_3) acceleration of the reference point of link 3, less gravity
         crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
         crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
-        crs_acc_3_in_axes3_x = (
-        crs_S_ddot_in_axes3_x - crs_c_3*crs_g_in_axes1_z - crs_g_in_axes1_x*crs_s_3
-        )
-        crs_acc_3_in_axes3_y = (
-        crs_S_ddot_in_axes3_y + crs_g_in_axes1_z*crs_s_3 - crs_c_3*crs_g_in_axes1_x
-        )
+        crs_g_in_axes3_x = crs_e_1_in_axes3_x*crs_g_in_axes1_z + crs_g_in_axes1_x*crs_h_3_t_13
+        crs_g_in_axes3_y = crs_e_1_in_axes3_x*crs_g_in_axes1_x - crs_g_in_axes1_z*crs_h_3_t_13
+        crs_acc_3_in_axes3_x = crs_S_ddot_in_axes3_x - crs_g_in_axes3_x
+        crs_acc_3_in_axes3_y = crs_S_ddot_in_axes3_y - crs_g_in_axes3_y
         crs_acc_3_in_axes3_z = crs_S_ddot_in_axes3_z - crs_g_in_axes1_y
         # (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         crs_mu_3_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x
         crs_mu_3_t_2 = crs_omega_1_in_axes3_y*crs_omega_1_in_axes3_y
         crs_mu_3_t_3 = crs_qd_2_t*crs_qd_2_t
+        crs_mu_3_t_4 = crs_J_3_in_spec3_yz*(crs_mu_3_t_2 - crs_mu_3_t_3)
+        crs_mu_3_t_5 = crs_J_3_in_spec3_xz*(crs_mu_3_t - crs_mu_3_t_3)
+        crs_mu_3_t_6 = crs_J_3_in_spec3_xy*(crs_mu_3_t - crs_mu_3_t_2)
         crs_mu_3_in_axes3_x = (
-        crs_B_3_in_axes3_yx*crs_J_3_in_spec3_xz + crs_B_3_in_axes3_zy*crs_Sigma_3_in_axes3_yy +
-            crs_J_3_in_spec3_yz*(crs_mu_3_t_2 - crs_mu_3_t_3) +
+        crs_mu_3_t_4 + crs_B_3_in_axes3_yx*crs_J_3_in_spec3_xz +
+            crs_B_3_in_axes3_zy*crs_Sigma_3_in_axes3_yy +
             crs_Sigma_3_in_axes3_zz*crs_alpha_1_in_axes3_x +
             crs_acc_3_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_in_axes3_zx*crs_J_3_in_spec3_xy -
             crs_acc_3_in_axes3_y*crs_h_3_in_spec3_z
         )
         crs_mu_3_in_axes3_y = (
         crs_B_3_in_axes3_zy*crs_J_3_in_spec3_xy + crs_Sigma_3_in_axes3_zz*crs_alpha_1_in_axes3_y +
-            crs_acc_3_in_axes3_x*crs_h_3_in_spec3_z - crs_B_3_in_axes3_xy*crs_J_3_in_spec3_yz -
-            crs_B_3_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_t -
-            crs_mu_3_t_3) - crs_acc_3_in_axes3_z*crs_h_3_in_spec3_x
+            crs_acc_3_in_axes3_x*crs_h_3_in_spec3_z - crs_mu_3_t_5 -
+            crs_B_3_in_axes3_xy*crs_J_3_in_spec3_yz - crs_B_3_in_axes3_zx*crs_Sigma_3_in_axes3_xx
+            - crs_acc_3_in_axes3_z*crs_h_3_in_spec3_x
         )
         crs_mu_3_in_axes3_z = (
-        crs_B_3_in_axes3_yx*crs_Sigma_3_in_axes3_xx + crs_J_3_in_spec3_xy*(crs_mu_3_t -
-            crs_mu_3_t_2) + crs_J_3_in_spec3_xz*crs_alpha_1_in_axes3_x +
+        crs_mu_3_t_6 + crs_B_3_in_axes3_yx*crs_Sigma_3_in_axes3_xx +
+            crs_J_3_in_spec3_xz*crs_alpha_1_in_axes3_x +
             crs_J_3_in_spec3_yz*crs_alpha_1_in_axes3_y + crs_acc_3_in_axes3_y*crs_h_3_in_spec3_x -
             crs_B_3_in_axes3_xy*crs_Sigma_3_in_axes3_yy - crs_acc_3_in_axes3_x*crs_h_3_in_spec3_y
         )
         # (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        crs_mu_1_in_axes1_z = (
-        crs_J_2_in_spec1_xx*crs_qdd_1 + crs_g_in_axes1_x*crs_h_2_in_spec1_z -
-            crs_g_in_axes1_y*crs_h_2_in_spec1_y
-        )
+        crs_mu_1_t = crs_g_in_axes1_y*crs_h_2_in_spec1_y - crs_g_in_axes1_x*crs_h_2_in_spec1_z
+        crs_mu_1_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1 - crs_mu_1_t
         # (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         crs_N_1_in_axes1_z = (
-        crs_mu_1_in_axes1_z + crs_c_3*crs_mu_3_in_axes3_x - crs_mu_3_in_axes3_y*crs_s_3
+        crs_mu_1_in_axes1_z + crs_e_1_in_axes3_x*crs_mu_3_in_axes3_x -
+            crs_h_3_t_13*crs_mu_3_in_axes3_y
         )
         # (crs-c) leg force on the platform without actuation and without the mass at the connection point
-        crs_c_t = (
+        crs_c_t = crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3)
+        crs_c_t_2 = crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3)
+        crs_c_t_3 = crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2)
+        crs_c_t_4 = (
         inv_crs_d_4_in_axes1_z*(crs_mu_3_in_axes3_z + crs_f_2_in_axes1_z*crs_r_1_in_axes1_x)
         )
         crs_c_in_axes3_x = (
-        crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3) - crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y
-            - crs_alpha_1_in_axes3_y*crs_h_3_in_spec3_z - crs_c_3*crs_f_2_in_axes1_z -
-            crs_c_t*crs_s_3
+        crs_c_t - crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y -
+            crs_alpha_1_in_axes3_y*crs_h_3_in_spec3_z - crs_c_t_4*crs_h_3_t_13 -
+            crs_e_1_in_axes3_x*crs_f_2_in_axes1_z
         )
         crs_c_in_axes3_y = (
-        crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z + crs_f_2_in_axes1_z*crs_s_3 +
-            crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3) -
-            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_3*crs_c_t
+        crs_c_t_2 + crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z + crs_f_2_in_axes1_z*crs_h_3_t_13 -
+            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_t_4*crs_e_1_in_axes3_x
         )
         crs_c_in_axes3_z = (
-        crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2) - crs_B_3_in_axes3_zx*crs_h_3_in_spec3_x -
+        crs_c_t_3 - crs_B_3_in_axes3_zx*crs_h_3_in_spec3_x -
             crs_B_3_in_axes3_zy*crs_h_3_in_spec3_y - crs_N_1_in_axes1_z*crs_w_1_in_axes3_z
         )
         crs_c_x = (
@@ -3835,7 +3817,7 @@ def _run_required(m, X, V, A):
         crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z
         crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x
         ok = (
-        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
+        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
             _TOLERANCE * crs_size)
         )
@@ -3932,62 +3914,61 @@ def _run_inverse_kinematics(m, X):
             crs_branch_2, crs_joint3_offset_x, crs_platform_joint_offset_x, crs_platform_point_x,
             crs_platform_point_y, crs_platform_point_z, crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (crs-S) from the base point to the connection point
-        crs_S_x = (
-        t_x + R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z -
-            crs_base_point_x
+        # (crs-h_3) first moment of link 3 about the connection point
+        crs_q_x = (
+        R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        crs_S_y = (
-        t_y + R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z -
-            crs_base_point_y
+        crs_q_y = (
+        R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        crs_S_z = (
-        t_z + R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z -
-            crs_base_point_z
+        crs_q_z = (
+        R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_in_turn1_x = (
-        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
+        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
+        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
+        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
+        crs_h_3_t_4 = (
+        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
+            crs_base_frame_zy*crs_h_3_t_3
         )
-        crs_S_in_turn1_y = (
-        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
+        crs_h_3_t_5 = (
+        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
+            crs_base_frame_zz*crs_h_3_t_3
         )
-        crs_S_in_turn1_z = (
-        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        crs_h_3_t_6 = (
+        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
+            crs_base_frame_zx*crs_h_3_t_3
         )
-        # (crs-rho2_1) squared amplitude
-        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
-        # (crs-root_1) root, with the sign of the branch
-        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
+        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
+        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
+        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
+        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
+        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
+        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
+        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-q_1) displacement of joint 1
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_q_1 = (
-        atan2(crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1,
-            crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1)
-        )
-        # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
-        # (crs-disc_2) discriminant of the distance equation
-        crs_disc_2 = crs_size_t - crs_rho2_1
-        # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
-        # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
+        crs_q_1 = atan2(crs_s_1, crs_c_1)
         # (crs-q_3) displacement of joint 3
-        crs_q_3 = (
-        atan2(crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t,
-            crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t)
+        crs_q_3 = atan2(crs_h_3_t_13, crs_e_1_in_axes3_x)
+        ok = (
+        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0)
         )
-        ok = ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0)
         # (crs-q_1) displacement of joint 1
         out_q[_q_crs[0][leg]] = crs_q_1
         # (crs-q_2) displacement of joint 2
-        out_q[_q_crs[1][leg]] = crs_q_2
+        out_q[_q_crs[1][leg]] = crs_h_3_t_11
         # (crs-q_3) displacement of joint 3
         out_q[_q_crs[2][leg]] = crs_q_3
     return ok, (out_q,)
 
 
-# joint_rates: 174 mul, 132 add, 9 div, 6 sqrt, 0 trig
+# joint_rates: 180 mul, 132 add, 9 div, 6 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -4050,7 +4031,7 @@ def _run_joint_rates(m, X, V):
             crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
             inv_crs_size_t,
         ) = k
-        # (crs-S) from the base point to the connection point
+        # (crs-h_3) first moment of link 3 about the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -4060,52 +4041,55 @@ def _run_joint_rates(m, X, V):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_z + t_z - crs_base_point_z
-        crs_S_in_turn1_x = (
-        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
+        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
+        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
+        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
+        crs_h_3_t_4 = (
+        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
+            crs_base_frame_zy*crs_h_3_t_3
         )
-        crs_S_in_turn1_y = (
-        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
+        crs_h_3_t_5 = (
+        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
+            crs_base_frame_zz*crs_h_3_t_3
         )
-        crs_S_in_turn1_z = (
-        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        crs_h_3_t_6 = (
+        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
+            crs_base_frame_zx*crs_h_3_t_3
         )
-        # (crs-rho2_1) squared amplitude
-        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
-        # (crs-root_1) root, with the sign of the branch
-        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
+        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
+        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
+        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
+        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
+        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
+        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
+        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
+        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
-        # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
-        # (crs-disc_2) discriminant of the distance equation
-        crs_disc_2 = crs_size_t - crs_rho2_1
-        # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
-        # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
-        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
-        # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-S_dot) velocity of the connection point
-        crs_S_dot_x = t_dot_x + crs_q_z*omega_y - crs_q_y*omega_z
-        crs_S_dot_y = t_dot_y + crs_q_x*omega_z - crs_q_z*omega_x
-        crs_S_dot_z = t_dot_z + crs_q_y*omega_x - crs_q_x*omega_y
+        crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
+        crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
+        crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y
+        crs_S_dot_x = crs_S_dot_t + t_dot_x
+        crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
+        crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_c_3*(crs_c_3*crs_r_1_in_axes1_x - crs_r_1_in_axes1_z*crs_s_3) +
-            crs_s_3*(crs_c_3*crs_r_1_in_axes1_z + crs_r_1_in_axes1_x*crs_s_3)
+        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
+            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
+            + crs_h_3_t_13*crs_r_1_in_axes1_x)
         )
+        # (crs-w_1) reciprocal vector 1
+        crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
+        # (crs-w_2) reciprocal vector 2
+        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
         # (crs-qd_1) rate of joint 1
         crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
@@ -4115,15 +4099,15 @@ def _run_joint_rates(m, X, V):
         crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
             crs_S_dot_z*crs_base_frame_zz
         )
-        crs_qd_1 = (crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)/crs_v_1_in_axes3_z
+        crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
         # (crs-qd_2) rate of joint 2
-        crs_qd_2_t = (crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)/crs_d_4_in_axes1_z
+        crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
         crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
         )
         ok = (
-        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
+        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
             _TOLERANCE * crs_size)
         )
@@ -4136,7 +4120,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 399 mul, 267 add, 9 div, 6 sqrt, 0 trig
+# joint_accelerations: 396 mul, 267 add, 9 div, 6 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -4203,6 +4187,23 @@ def _run_joint_accelerations(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
@@ -4212,7 +4213,7 @@ def _run_joint_accelerations(m, X, V, A):
             crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
             inv_crs_size_t,
         ) = k
-        # (crs-S) from the base point to the connection point
+        # (crs-h_3) first moment of link 3 about the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -4222,39 +4223,34 @@ def _run_joint_accelerations(m, X, V, A):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_z + t_z - crs_base_point_z
-        crs_S_in_turn1_x = (
-        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
+        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
+        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
+        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
+        crs_h_3_t_4 = (
+        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
+            crs_base_frame_zy*crs_h_3_t_3
         )
-        crs_S_in_turn1_y = (
-        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
+        crs_h_3_t_5 = (
+        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
+            crs_base_frame_zz*crs_h_3_t_3
         )
-        crs_S_in_turn1_z = (
-        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        crs_h_3_t_6 = (
+        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
+            crs_base_frame_zx*crs_h_3_t_3
         )
-        # (crs-rho2_1) squared amplitude
-        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
-        # (crs-root_1) root, with the sign of the branch
-        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
+        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
+        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
+        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
+        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
+        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
+        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
+        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
+        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
-        # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
-        # (crs-disc_2) discriminant of the distance equation
-        crs_disc_2 = crs_size_t - crs_rho2_1
-        # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
-        # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
-        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
-        # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-S_dot) velocity of the connection point
         crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
         crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
@@ -4263,16 +4259,45 @@ def _run_joint_accelerations(m, X, V, A):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_c_3*(crs_c_3*crs_r_1_in_axes1_x - crs_r_1_in_axes1_z*crs_s_3) +
-            crs_s_3*(crs_c_3*crs_r_1_in_axes1_z + crs_r_1_in_axes1_x*crs_s_3)
+        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
+            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
+            + crs_h_3_t_13*crs_r_1_in_axes1_x)
         )
         # (crs-w_1) reciprocal vector 1
+        axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
+        axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
+        axis_z_crs_axes3_z = crs_base_frame_zz*crs_c_1 - crs_base_frame_zy*crs_s_1
         crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
+        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
+        axis_y_crs_axes3_x = (
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
+            crs_base_frame_xx*crs_h_3_t_13
+        )
+        axis_y_crs_axes3_y = (
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
+            crs_base_frame_yx*crs_h_3_t_13
+        )
+        axis_y_crs_axes3_z = (
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
+            crs_base_frame_zx*crs_h_3_t_13
+        )
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
+        )
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_z*axis_z_crs_axes3_x - axis_y_crs_axes3_x*axis_z_crs_axes3_z
+        )
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
+        )
+        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
         # (crs-qd_1) rate of joint 1
         crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
@@ -4284,27 +4309,37 @@ def _run_joint_accelerations(m, X, V, A):
         )
         crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
         # (crs-qd_2) rate of joint 2
-        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
         crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
         crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_in_axes3_x = crs_c_3*crs_qd_1
-        crs_omega_1_in_axes3_y = -crs_qd_1*crs_s_3
-        # (crs-a_p) acceleration of the connection point without its centripetal part
-        crs_a_p_x = t_ddot_x + alpha_y*crs_q_z - alpha_z*crs_q_y
-        crs_a_p_y = t_ddot_y + alpha_z*crs_q_x - alpha_x*crs_q_z
-        crs_a_p_z = t_ddot_z + alpha_x*crs_q_y - alpha_y*crs_q_x
+        crs_omega_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qd_1
+        crs_omega_1_in_axes3_y = -crs_h_3_t_13*crs_qd_1
+        # (crs-W_3) centripetal tensor of link 3
+        crs_W_3_in_axes3_xz = crs_omega_1_in_axes3_x*crs_qd_2_t
         # (crs-S_ddot) acceleration of the connection point
-        crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
-        crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
-        crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
+        crs_S_ddot_x = t_ddot_x + B_p_xy*crs_q_y + B_p_xz*crs_q_z - W_p_t_4*crs_q_x
+        crs_S_ddot_y = t_ddot_y + B_p_yx*crs_q_x + B_p_yz*crs_q_z - W_p_t_5*crs_q_y
+        crs_S_ddot_z = t_ddot_z + B_p_zx*crs_q_x + B_p_zy*crs_q_y - W_p_t_6*crs_q_z
+        crs_S_ddot_in_axes3_x = (
+        axis_x_crs_axes3_x*crs_S_ddot_x + axis_x_crs_axes3_y*crs_S_ddot_y +
+            axis_x_crs_axes3_z*crs_S_ddot_z
+        )
+        crs_S_ddot_in_axes3_y = (
+        axis_y_crs_axes3_x*crs_S_ddot_x + axis_y_crs_axes3_y*crs_S_ddot_y +
+            axis_y_crs_axes3_z*crs_S_ddot_z
+        )
+        crs_S_ddot_in_axes3_z = (
+        axis_z_crs_axes3_x*crs_S_ddot_x + axis_z_crs_axes3_y*crs_S_ddot_y +
+            axis_z_crs_axes3_z*crs_S_ddot_z
+        )
         # (crs-bias) acceleration of the connection point at zero joint accelerations
         crs_bias_t = (
-        crs_omega_1_in_axes3_x*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3) +
-            crs_omega_1_in_axes3_y*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2)
+        crs_omega_1_in_axes3_x*(crs_h_3_t_11*crs_h_3_t_13 + crs_h_3_t_13*crs_joint3_offset_x) +
+            crs_omega_1_in_axes3_y*(crs_e_1_in_axes3_x*crs_h_3_t_11 +
+            crs_e_1_in_axes3_x*crs_joint3_offset_x)
         )
         crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
         crs_bias_t_3 = -crs_omega_1_in_axes3_y*crs_platform_joint_offset_x
@@ -4316,52 +4351,27 @@ def _run_joint_accelerations(m, X, V, A):
         crs_bias_t*crs_omega_1_in_axes3_x - crs_bias_t_3*crs_omega_1_in_axes3_x
         )
         crs_bias_in_axes3_z = (
-        crs_bias_t_2*crs_omega_1_in_axes3_x +
-            crs_omega_1_in_axes3_x*crs_platform_joint_offset_x*crs_qd_2_t -
-            2.0*crs_qd_2*(crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*crs_s_3)
+        crs_W_3_in_axes3_xz*crs_platform_joint_offset_x + crs_bias_t_2*crs_omega_1_in_axes3_x -
+            2.0*crs_qd_2*(crs_e_1_in_axes3_x*crs_omega_1_in_axes3_y +
+            crs_h_3_t_13*crs_omega_1_in_axes3_x)
         )
         # (crs-rel) acceleration of the connection point left to the joint accelerations
-        axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
-        axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
-        axis_z_crs_axes3_z = crs_base_frame_zz*crs_c_1 - crs_base_frame_zy*crs_s_1
-        crs_rel_t = crs_c_1*crs_c_3
-        crs_rel_t_2 = crs_c_3*crs_s_1
-        axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_rel_t + crs_base_frame_xz*crs_rel_t_2 - crs_base_frame_xx*crs_s_3
-        )
-        axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_rel_t + crs_base_frame_yz*crs_rel_t_2 - crs_base_frame_yx*crs_s_3
-        )
-        axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_rel_t + crs_base_frame_zz*crs_rel_t_2 - crs_base_frame_zx*crs_s_3
-        )
-        crs_rel_in_axes3_x = (
-        crs_S_ddot_x*(axis_y_crs_axes3_y*axis_z_crs_axes3_z -
-            axis_y_crs_axes3_z*axis_z_crs_axes3_y) +
-            crs_S_ddot_y*(axis_y_crs_axes3_z*axis_z_crs_axes3_x -
-            axis_y_crs_axes3_x*axis_z_crs_axes3_z) +
-            crs_S_ddot_z*(axis_y_crs_axes3_x*axis_z_crs_axes3_y -
-            axis_y_crs_axes3_y*axis_z_crs_axes3_x) - crs_bias_in_axes3_x
-        )
-        crs_rel_in_axes3_y = (
-        axis_y_crs_axes3_x*crs_S_ddot_x + axis_y_crs_axes3_y*crs_S_ddot_y +
-            axis_y_crs_axes3_z*crs_S_ddot_z - crs_bias_in_axes3_y
-        )
-        crs_rel_in_axes3_z = (
-        axis_z_crs_axes3_x*crs_S_ddot_x + axis_z_crs_axes3_y*crs_S_ddot_y +
-            axis_z_crs_axes3_z*crs_S_ddot_z - crs_bias_in_axes3_z
-        )
+        crs_rel_in_axes3_x = crs_S_ddot_in_axes3_x - crs_bias_in_axes3_x
+        crs_rel_in_axes3_y = crs_S_ddot_in_axes3_y - crs_bias_in_axes3_y
+        crs_rel_in_axes3_z = crs_S_ddot_in_axes3_z - crs_bias_in_axes3_z
         # (crs-qdd_1) acceleration of joint 1
         crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_2) acceleration of joint 2
         crs_qdd_2_t = (
-        inv_crs_d_4_in_axes1_z*(crs_c_3*crs_rel_in_axes3_y + crs_rel_in_axes3_x*crs_s_3)
+        inv_crs_d_4_in_axes1_z*(crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
+            crs_h_3_t_13*crs_rel_in_axes3_x)
         )
         crs_qdd_2 = (
-        crs_c_3*crs_rel_in_axes3_x + crs_qdd_2_t*crs_r_1_in_axes1_x - crs_rel_in_axes3_y*crs_s_3
+        crs_e_1_in_axes3_x*crs_rel_in_axes3_x + crs_qdd_2_t*crs_r_1_in_axes1_x -
+            crs_h_3_t_13*crs_rel_in_axes3_y
         )
         ok = (
-        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
+        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
             _TOLERANCE * crs_size)
         )
@@ -4374,7 +4384,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 645 mul, 471 add, 9 div, 6 sqrt, 0 trig
+# legs: 642 mul, 471 add, 9 div, 6 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -4442,6 +4452,23 @@ def _run_legs(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz, crs_J_3_in_spec3_yz,
@@ -4455,7 +4482,7 @@ def _run_legs(m, X, V, A):
             crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
             crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (crs-S) from the base point to the connection point
+        # (crs-h_3) first moment of link 3 about the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -4465,39 +4492,34 @@ def _run_legs(m, X, V, A):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_z + t_z - crs_base_point_z
-        crs_S_in_turn1_x = (
-        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
+        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
+        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
+        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
+        crs_h_3_t_4 = (
+        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
+            crs_base_frame_zy*crs_h_3_t_3
         )
-        crs_S_in_turn1_y = (
-        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
+        crs_h_3_t_5 = (
+        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
+            crs_base_frame_zz*crs_h_3_t_3
         )
-        crs_S_in_turn1_z = (
-        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        crs_h_3_t_6 = (
+        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
+            crs_base_frame_zx*crs_h_3_t_3
         )
-        # (crs-rho2_1) squared amplitude
-        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
-        # (crs-root_1) root, with the sign of the branch
-        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
+        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
+        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
+        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
+        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
+        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
+        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
+        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
+        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
-        # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
-        # (crs-disc_2) discriminant of the distance equation
-        crs_disc_2 = crs_size_t - crs_rho2_1
-        # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
-        # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
-        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
-        # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-S_dot) velocity of the connection point
         crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
         crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
@@ -4506,13 +4528,14 @@ def _run_legs(m, X, V, A):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_c_3*(crs_c_3*crs_r_1_in_axes1_x - crs_r_1_in_axes1_z*crs_s_3) +
-            crs_s_3*(crs_c_3*crs_r_1_in_axes1_z + crs_r_1_in_axes1_x*crs_s_3)
+        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
+            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
+            + crs_h_3_t_13*crs_r_1_in_axes1_x)
         )
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
@@ -4523,16 +4546,19 @@ def _run_legs(m, X, V, A):
         crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
         crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_c_1*crs_c_3
-        crs_w_2_t_2 = crs_c_3*crs_s_1
+        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
+        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
+            crs_base_frame_xx*crs_h_3_t_13
         )
         axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
+            crs_base_frame_yx*crs_h_3_t_13
         )
         axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
+            crs_base_frame_zx*crs_h_3_t_13
         )
         axis_x_crs_axes3_x = (
         axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
@@ -4545,8 +4571,8 @@ def _run_legs(m, X, V, A):
         )
         inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
         crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
-        crs_w_2_in_axes3_x = crs_c_3 + crs_s_3*crs_w_2_t_3
-        crs_w_2_in_axes3_y = crs_c_3*crs_w_2_t_3 - crs_s_3
+        crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
         crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
         crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
         crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
@@ -4567,20 +4593,16 @@ def _run_legs(m, X, V, A):
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_in_axes3_x = crs_c_3*crs_qd_1
-        crs_omega_1_in_axes3_y = -crs_qd_1*crs_s_3
+        crs_omega_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qd_1
+        crs_omega_1_in_axes3_y = -crs_h_3_t_13*crs_qd_1
         # (crs-W_3) centripetal tensor of link 3
         crs_W_3_in_axes3_yz = crs_omega_1_in_axes3_y*crs_qd_2_t
         crs_W_3_in_axes3_xz = crs_omega_1_in_axes3_x*crs_qd_2_t
         crs_W_3_in_axes3_xy = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_y
-        # (crs-a_p) acceleration of the connection point without its centripetal part
-        crs_a_p_x = t_ddot_x + alpha_y*crs_q_z - alpha_z*crs_q_y
-        crs_a_p_y = t_ddot_y + alpha_z*crs_q_x - alpha_x*crs_q_z
-        crs_a_p_z = t_ddot_z + alpha_x*crs_q_y - alpha_y*crs_q_x
         # (crs-S_ddot) acceleration of the connection point
-        crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
-        crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
-        crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
+        crs_S_ddot_x = t_ddot_x + B_p_xy*crs_q_y + B_p_xz*crs_q_z - W_p_t_4*crs_q_x
+        crs_S_ddot_y = t_ddot_y + B_p_yx*crs_q_x + B_p_yz*crs_q_z - W_p_t_5*crs_q_y
+        crs_S_ddot_z = t_ddot_z + B_p_zx*crs_q_x + B_p_zy*crs_q_y - W_p_t_6*crs_q_z
         crs_S_ddot_in_axes3_x = (
         axis_x_crs_axes3_x*crs_S_ddot_x + axis_x_crs_axes3_y*crs_S_ddot_y +
             axis_x_crs_axes3_z*crs_S_ddot_z
@@ -4595,8 +4617,9 @@ def _run_legs(m, X, V, A):
         )
         # (crs-bias) acceleration of the connection point at zero joint accelerations
         crs_bias_t = (
-        crs_omega_1_in_axes3_x*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3) +
-            crs_omega_1_in_axes3_y*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2)
+        crs_omega_1_in_axes3_x*(crs_h_3_t_11*crs_h_3_t_13 + crs_h_3_t_13*crs_joint3_offset_x) +
+            crs_omega_1_in_axes3_y*(crs_e_1_in_axes3_x*crs_h_3_t_11 +
+            crs_e_1_in_axes3_x*crs_joint3_offset_x)
         )
         crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
         crs_bias_t_3 = -crs_omega_1_in_axes3_y*crs_platform_joint_offset_x
@@ -4609,7 +4632,8 @@ def _run_legs(m, X, V, A):
         )
         crs_bias_in_axes3_z = (
         crs_W_3_in_axes3_xz*crs_platform_joint_offset_x + crs_bias_t_2*crs_omega_1_in_axes3_x -
-            2.0*crs_qd_2*(crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*crs_s_3)
+            2.0*crs_qd_2*(crs_e_1_in_axes3_x*crs_omega_1_in_axes3_y +
+            crs_h_3_t_13*crs_omega_1_in_axes3_x)
         )
         # (crs-rel) acceleration of the connection point left to the joint accelerations
         crs_rel_in_axes3_x = crs_S_ddot_in_axes3_x - crs_bias_in_axes3_x
@@ -4617,86 +4641,90 @@ def _run_legs(m, X, V, A):
         crs_rel_in_axes3_z = crs_S_ddot_in_axes3_z - crs_bias_in_axes3_z
         # (crs-qdd_1) acceleration of joint 1
         crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z
-        # (crs-qdd_3) acceleration of joint 3
-        crs_qdd_3 = (
-        inv_crs_d_4_in_axes1_z*(crs_c_3*crs_rel_in_axes3_y + crs_rel_in_axes3_x*crs_s_3)
+        # (crs-qdd_2) acceleration of joint 2
+        crs_qdd_2_t = (
+        inv_crs_d_4_in_axes1_z*(crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
+            crs_h_3_t_13*crs_rel_in_axes3_x)
+        )
+        crs_qdd_2 = (
+        crs_e_1_in_axes3_x*crs_rel_in_axes3_x + crs_qdd_2_t*crs_r_1_in_axes1_x -
+            crs_h_3_t_13*crs_rel_in_axes3_y
         )
         # (crs-alpha_1) angular acceleration of link 1
-        crs_alpha_1_in_axes3_x = crs_c_3*crs_qdd_1
-        crs_alpha_1_in_axes3_y = -crs_qdd_1*crs_s_3
+        crs_alpha_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qdd_1
+        crs_alpha_1_in_axes3_y = -crs_h_3_t_13*crs_qdd_1
         # (crs-alpha_3) angular acceleration of link 3
         crs_alpha_3_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_in_axes3_x
         crs_alpha_3_in_axes3_y = crs_alpha_1_in_axes3_y - crs_W_3_in_axes3_xz
         # (crs-B_3) acceleration tensor of link 3
-        crs_B_3_in_axes3_xy = crs_W_3_in_axes3_xy - crs_qdd_3
-        crs_B_3_in_axes3_yx = crs_W_3_in_axes3_xy + crs_qdd_3
+        crs_B_3_in_axes3_xy = crs_W_3_in_axes3_xy - crs_qdd_2_t
+        crs_B_3_in_axes3_yx = crs_W_3_in_axes3_xy + crs_qdd_2_t
         crs_B_3_in_axes3_zx = crs_W_3_in_axes3_xz - crs_alpha_3_in_axes3_y
         crs_B_3_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_in_axes3_x
         # (crs-acc_2) acceleration of the reference point of link 2, less gravity
-        crs_acc_2_in_axes1_z = (
-        crs_c_3*crs_rel_in_axes3_x + crs_qdd_3*crs_r_1_in_axes1_x - crs_g_in_axes1_z -
-            crs_rel_in_axes3_y*crs_s_3
-        )
+        crs_acc_2_in_axes1_z = crs_qdd_2 - crs_g_in_axes1_z
         # (crs-f_2) inertia force of link 2 less its weight
         crs_f_2_in_axes1_z = crs_acc_2_in_axes1_z*crs_link2_mass
         # (crs-acc_3) acceleration of the reference point of link 3, less gravity
         crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
         crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
-        crs_acc_3_in_axes3_x = (
-        crs_S_ddot_in_axes3_x - crs_c_3*crs_g_in_axes1_z - crs_g_in_axes1_x*crs_s_3
-        )
-        crs_acc_3_in_axes3_y = (
-        crs_S_ddot_in_axes3_y + crs_g_in_axes1_z*crs_s_3 - crs_c_3*crs_g_in_axes1_x
-        )
+        crs_g_in_axes3_x = crs_e_1_in_axes3_x*crs_g_in_axes1_z + crs_g_in_axes1_x*crs_h_3_t_13
+        crs_g_in_axes3_y = crs_e_1_in_axes3_x*crs_g_in_axes1_x - crs_g_in_axes1_z*crs_h_3_t_13
+        crs_acc_3_in_axes3_x = crs_S_ddot_in_axes3_x - crs_g_in_axes3_x
+        crs_acc_3_in_axes3_y = crs_S_ddot_in_axes3_y - crs_g_in_axes3_y
         crs_acc_3_in_axes3_z = crs_S_ddot_in_axes3_z - crs_g_in_axes1_y
         # (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         crs_mu_3_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x
         crs_mu_3_t_2 = crs_omega_1_in_axes3_y*crs_omega_1_in_axes3_y
         crs_mu_3_t_3 = crs_qd_2_t*crs_qd_2_t
+        crs_mu_3_t_4 = crs_J_3_in_spec3_yz*(crs_mu_3_t_2 - crs_mu_3_t_3)
+        crs_mu_3_t_5 = crs_J_3_in_spec3_xz*(crs_mu_3_t - crs_mu_3_t_3)
+        crs_mu_3_t_6 = crs_J_3_in_spec3_xy*(crs_mu_3_t - crs_mu_3_t_2)
         crs_mu_3_in_axes3_x = (
-        crs_B_3_in_axes3_yx*crs_J_3_in_spec3_xz + crs_B_3_in_axes3_zy*crs_Sigma_3_in_axes3_yy +
-            crs_J_3_in_spec3_yz*(crs_mu_3_t_2 - crs_mu_3_t_3) +
+        crs_mu_3_t_4 + crs_B_3_in_axes3_yx*crs_J_3_in_spec3_xz +
+            crs_B_3_in_axes3_zy*crs_Sigma_3_in_axes3_yy +
             crs_Sigma_3_in_axes3_zz*crs_alpha_1_in_axes3_x +
             crs_acc_3_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_in_axes3_zx*crs_J_3_in_spec3_xy -
             crs_acc_3_in_axes3_y*crs_h_3_in_spec3_z
         )
         crs_mu_3_in_axes3_y = (
         crs_B_3_in_axes3_zy*crs_J_3_in_spec3_xy + crs_Sigma_3_in_axes3_zz*crs_alpha_1_in_axes3_y +
-            crs_acc_3_in_axes3_x*crs_h_3_in_spec3_z - crs_B_3_in_axes3_xy*crs_J_3_in_spec3_yz -
-            crs_B_3_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_t -
-            crs_mu_3_t_3) - crs_acc_3_in_axes3_z*crs_h_3_in_spec3_x
+            crs_acc_3_in_axes3_x*crs_h_3_in_spec3_z - crs_mu_3_t_5 -
+            crs_B_3_in_axes3_xy*crs_J_3_in_spec3_yz - crs_B_3_in_axes3_zx*crs_Sigma_3_in_axes3_xx
+            - crs_acc_3_in_axes3_z*crs_h_3_in_spec3_x
         )
         crs_mu_3_in_axes3_z = (
-        crs_B_3_in_axes3_yx*crs_Sigma_3_in_axes3_xx + crs_J_3_in_spec3_xy*(crs_mu_3_t -
-            crs_mu_3_t_2) + crs_J_3_in_spec3_xz*crs_alpha_1_in_axes3_x +
+        crs_mu_3_t_6 + crs_B_3_in_axes3_yx*crs_Sigma_3_in_axes3_xx +
+            crs_J_3_in_spec3_xz*crs_alpha_1_in_axes3_x +
             crs_J_3_in_spec3_yz*crs_alpha_1_in_axes3_y + crs_acc_3_in_axes3_y*crs_h_3_in_spec3_x -
             crs_B_3_in_axes3_xy*crs_Sigma_3_in_axes3_yy - crs_acc_3_in_axes3_x*crs_h_3_in_spec3_y
         )
         # (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        crs_mu_1_in_axes1_z = (
-        crs_J_2_in_spec1_xx*crs_qdd_1 + crs_g_in_axes1_x*crs_h_2_in_spec1_z -
-            crs_g_in_axes1_y*crs_h_2_in_spec1_y
-        )
+        crs_mu_1_t = crs_g_in_axes1_y*crs_h_2_in_spec1_y - crs_g_in_axes1_x*crs_h_2_in_spec1_z
+        crs_mu_1_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1 - crs_mu_1_t
         # (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         crs_N_1_in_axes1_z = (
-        crs_mu_1_in_axes1_z + crs_c_3*crs_mu_3_in_axes3_x - crs_mu_3_in_axes3_y*crs_s_3
+        crs_mu_1_in_axes1_z + crs_e_1_in_axes3_x*crs_mu_3_in_axes3_x -
+            crs_h_3_t_13*crs_mu_3_in_axes3_y
         )
         # (crs-c) leg force on the platform without actuation and without the mass at the connection point
-        crs_c_t = (
+        crs_c_t = crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3)
+        crs_c_t_2 = crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3)
+        crs_c_t_3 = crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2)
+        crs_c_t_4 = (
         inv_crs_d_4_in_axes1_z*(crs_mu_3_in_axes3_z + crs_f_2_in_axes1_z*crs_r_1_in_axes1_x)
         )
         crs_c_in_axes3_x = (
-        crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3) - crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y
-            - crs_alpha_1_in_axes3_y*crs_h_3_in_spec3_z - crs_c_3*crs_f_2_in_axes1_z -
-            crs_c_t*crs_s_3
+        crs_c_t - crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y -
+            crs_alpha_1_in_axes3_y*crs_h_3_in_spec3_z - crs_c_t_4*crs_h_3_t_13 -
+            crs_e_1_in_axes3_x*crs_f_2_in_axes1_z
         )
         crs_c_in_axes3_y = (
-        crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z + crs_f_2_in_axes1_z*crs_s_3 +
-            crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3) -
-            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_3*crs_c_t
+        crs_c_t_2 + crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z + crs_f_2_in_axes1_z*crs_h_3_t_13 -
+            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_t_4*crs_e_1_in_axes3_x
         )
         crs_c_in_axes3_z = (
-        crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2) - crs_B_3_in_axes3_zx*crs_h_3_in_spec3_x -
+        crs_c_t_3 - crs_B_3_in_axes3_zx*crs_h_3_in_spec3_x -
             crs_B_3_in_axes3_zy*crs_h_3_in_spec3_y - crs_N_1_in_axes1_z*crs_w_1_in_axes3_z
         )
         # (crs-c_true) leg force on the platform without actuation, the last link's mass included
@@ -4716,7 +4744,7 @@ def _run_legs(m, X, V, A):
             axis_z_crs_axes3_z*crs_c_true_in_axes3_z
         )
         ok = (
-        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
+        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
             _TOLERANCE * crs_size)
         )
@@ -4780,12 +4808,14 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
+    gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
+        m_star*t_z)
     )
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
@@ -4800,60 +4830,62 @@ def _run_potential(m, X):
             crs_platform_point_z, crs_potential_t, crs_potential_t_2, crs_size_t, crs_size_t_2,
             inv_crs_size_t,
         ) = k
-        # (crs-S) from the base point to the connection point
-        crs_S_x = (
-        t_x + R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z -
-            crs_base_point_x
+        # (crs-h_3) first moment of link 3 about the connection point
+        crs_q_x = (
+        R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        crs_S_y = (
-        t_y + R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z -
-            crs_base_point_y
+        crs_q_y = (
+        R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        crs_S_z = (
-        t_z + R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z -
-            crs_base_point_z
+        crs_q_z = (
+        R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_in_turn1_x = (
-        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
+        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
+        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
+        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
+        crs_h_3_t_4 = (
+        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
+            crs_base_frame_zy*crs_h_3_t_3
         )
-        crs_S_in_turn1_y = (
-        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
+        crs_h_3_t_5 = (
+        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
+            crs_base_frame_zz*crs_h_3_t_3
         )
-        crs_S_in_turn1_z = (
-        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        crs_h_3_t_6 = (
+        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
+            crs_base_frame_zx*crs_h_3_t_3
         )
-        # (crs-rho2_1) squared amplitude
-        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
-        # (crs-root_1) root, with the sign of the branch
-        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
+        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
+        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
+        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
+        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
+        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
+        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_in_axes1_x = (
+        crs_e_1_in_axes3_x*crs_h_3_in_spec3_y + crs_h_3_in_spec3_x*crs_h_3_t_13
+        )
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
+        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
+        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
-        # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
-        # (crs-disc_2) discriminant of the distance equation
-        crs_disc_2 = crs_size_t - crs_rho2_1
-        # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
-        # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
-        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
-        # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
+        # (crs-acc_3) acceleration of the reference point of link 3, less gravity
+        crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
+        crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
         # (potential) potential energy
         crs_potential_t_3 = (
-        crs_g_in_axes1_z*(crs_h_2_in_spec1_x + crs_c_3*crs_h_3_in_spec3_x +
-            crs_link2_mass*(crs_b_in_axes1_z + crs_q_2) - crs_h_3_in_spec3_y*crs_s_3) +
-            (crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1)*(crs_h_2_in_spec1_y +
-            crs_c_3*crs_h_3_in_spec3_y + crs_h_3_in_spec3_x*crs_s_3 +
+        crs_g_in_axes1_x*(crs_h_2_in_spec1_y + crs_h_3_in_axes1_x +
             crs_link2_mass*(crs_c_1*crs_potential_t + crs_potential_t_2*crs_s_1)) +
-            (crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1)*(crs_h_2_in_spec1_z + crs_h_3_in_spec3_z
-            + crs_link2_mass*(crs_c_1*crs_potential_t_2 - crs_potential_t*crs_s_1))
+            crs_g_in_axes1_y*(crs_h_2_in_spec1_z + crs_h_3_in_spec3_z +
+            crs_link2_mass*(crs_c_1*crs_potential_t_2 - crs_potential_t*crs_s_1)) +
+            crs_g_in_axes1_z*(crs_h_2_in_spec1_x + crs_e_1_in_axes3_x*crs_h_3_in_spec3_x +
+            crs_link2_mass*(crs_b_in_axes1_z + crs_h_3_t_11) - crs_h_3_in_spec3_y*crs_h_3_t_13)
         )
-        ok = ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0)
+        ok = (
+        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0)
+        )
         # (potential) potential energy
         potential_t_2 += crs_potential_t_3
     # (potential) potential energy
@@ -4863,7 +4895,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 271 mul, 180 add, 9 div, 10 sqrt, 0 trig
+# condition: 274 mul, 180 add, 9 div, 10 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -4923,7 +4955,7 @@ def _run_condition(m, X):
             crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
             inv_crs_size, inv_crs_size_t, inv_crs_size_t_2,
         ) = k
-        # (crs-S) from the base point to the connection point
+        # (crs-h_3) first moment of link 3 about the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -4933,47 +4965,43 @@ def _run_condition(m, X):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_z + t_z - crs_base_point_z
-        crs_S_in_turn1_x = (
-        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
+        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
+        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
+        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
+        crs_h_3_t_4 = (
+        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
+            crs_base_frame_zy*crs_h_3_t_3
         )
-        crs_S_in_turn1_y = (
-        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
+        crs_h_3_t_5 = (
+        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
+            crs_base_frame_zz*crs_h_3_t_3
         )
-        crs_S_in_turn1_z = (
-        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
+        crs_h_3_t_6 = (
+        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
+            crs_base_frame_zx*crs_h_3_t_3
         )
-        # (crs-rho2_1) squared amplitude
-        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
-        # (crs-root_1) root, with the sign of the branch
-        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
+        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
+        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
+        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
+        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
+        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
+        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
+        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
+        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
+        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
-        # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
-        # (crs-disc_2) discriminant of the distance equation
-        crs_disc_2 = crs_size_t - crs_rho2_1
-        # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
-        # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
-        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
-        # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_c_3*(crs_c_3*crs_r_1_in_axes1_x - crs_r_1_in_axes1_z*crs_s_3) +
-            crs_s_3*(crs_c_3*crs_r_1_in_axes1_z + crs_r_1_in_axes1_x*crs_s_3)
+        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
+            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
+            + crs_h_3_t_13*crs_r_1_in_axes1_x)
         )
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
@@ -4984,37 +5012,38 @@ def _run_condition(m, X):
         crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
         crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_c_1*crs_c_3
-        crs_w_2_t_2 = crs_c_3*crs_s_1
+        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
+        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
+            crs_base_frame_xx*crs_h_3_t_13
         )
         axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
+            crs_base_frame_yx*crs_h_3_t_13
         )
         axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
+            crs_base_frame_zx*crs_h_3_t_13
         )
-        crs_w_2_t_3 = crs_r_1_in_axes1_x/crs_d_4_in_axes1_z
-        crs_w_2_in_axes3_x = crs_c_3 + crs_s_3*crs_w_2_t_3
-        crs_w_2_in_axes3_y = crs_c_3*crs_w_2_t_3 - crs_s_3
-        crs_w_2_x = (
-        axis_y_crs_axes3_x*crs_w_2_in_axes3_y +
-            crs_w_2_in_axes3_x*(axis_y_crs_axes3_y*axis_z_crs_axes3_z -
-            axis_y_crs_axes3_z*axis_z_crs_axes3_y)
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
         )
-        crs_w_2_y = (
-        axis_y_crs_axes3_y*crs_w_2_in_axes3_y +
-            crs_w_2_in_axes3_x*(axis_y_crs_axes3_z*axis_z_crs_axes3_x -
-            axis_y_crs_axes3_x*axis_z_crs_axes3_z)
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_z*axis_z_crs_axes3_x - axis_y_crs_axes3_x*axis_z_crs_axes3_z
         )
-        crs_w_2_z = (
-        axis_y_crs_axes3_z*crs_w_2_in_axes3_y +
-            crs_w_2_in_axes3_x*(axis_y_crs_axes3_x*axis_z_crs_axes3_y -
-            axis_y_crs_axes3_y*axis_z_crs_axes3_x)
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
         )
+        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
+        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
+        crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
+        crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
+        crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
+        crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
         # (crs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        crs_pivot_size = abs(crs_rho2_1)
+        crs_pivot_size = abs(crs_h_3_t_7)
         crs_pivot_size_2 = abs(crs_v_1_in_axes3_z)
         crs_pivot_size_3 = abs(crs_d_4_in_axes1_z)
         crs_least_pivots = (
@@ -5037,11 +5066,11 @@ def _run_condition(m, X):
         crs_spread_t*crs_spread_t + crs_spread_t_2*crs_spread_t_2 + crs_spread_t_3*crs_spread_t_3
         )
         clear = (
-        clear & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) &
+        clear & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
             _TOLERANCE * crs_size)
         )
-        reached = reached & (crs_disc_2 >= 0.0)
+        reached = reached & (crs_h_3_t_10 >= 0.0)
         # (spread) rms distance of the platform points from their centroid
         spread_crs += crs_spread_t_4
         # (crs-w_1) reciprocal vector 1
@@ -5062,7 +5091,7 @@ def _run_condition(m, X):
         out_H[_H_crs[11][leg]] = crs_H_a_2_z
         # (crs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_crs[0][leg]] = crs_least_pivots
-        out_reach[_reach_crs[0][leg]] = crs_disc_2
+        out_reach[_reach_crs[0][leg]] = crs_h_3_t_10
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_crs)*spread_t
     # (spread) rms distance of the platform points from their centroid
@@ -5315,12 +5344,12 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[[0, 1, 3, 4, 6, 7]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
-    gap = _wrapped(subtract_1, [0, 2, 4])
-    return (gap,)
+    residual = _wrapped(subtract_1, [0, 2, 4])
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -5329,7 +5358,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

@@ -145,7 +145,7 @@ int hybrid_3prps_M(const hybrid_3prps_model *model, const hybrid_3prps_real *X, 
 size_t hybrid_3prps_M_batch(const hybrid_3prps_model *model, size_t n, const hybrid_3prps_real *X,
     hybrid_3prps_real *M, int *status);
 
-/* Velocity and gravity terms Z. 354 mul, 267 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 363 mul, 273 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int hybrid_3prps_Z(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
     hybrid_3prps_real *V, hybrid_3prps_real *Z);
@@ -173,7 +173,7 @@ int hybrid_3prps_joint_rates(const hybrid_3prps_model *model, const hybrid_3prps
 size_t hybrid_3prps_joint_rates_batch(const hybrid_3prps_model *model, size_t n, const
     hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *rates, int *status);
 
-/* Accelerations of all joints. 213 mul, 159 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 210 mul, 159 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hybrid_3prps_joint_accelerations(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
     const hybrid_3prps_real *V, const hybrid_3prps_real *A, hybrid_3prps_real *accelerations);
@@ -181,7 +181,7 @@ size_t hybrid_3prps_joint_accelerations_batch(const hybrid_3prps_model *model, s
     hybrid_3prps_real *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A,
     hybrid_3prps_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 576 mul, 483 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 549 mul, 465 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3prps_dynamics(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
     hybrid_3prps_real *V, hybrid_3prps_real *M, hybrid_3prps_real *Z, hybrid_3prps_real *H);
@@ -189,7 +189,7 @@ size_t hybrid_3prps_dynamics_batch(const hybrid_3prps_model *model, size_t n, co
     hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *M, hybrid_3prps_real *Z,
     hybrid_3prps_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 432 mul, 339 add, 3 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 423 mul, 330 add, 3 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int hybrid_3prps_inverse_dynamics(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
@@ -199,7 +199,7 @@ size_t hybrid_3prps_inverse_dynamics_batch(const hybrid_3prps_model *model, size
     hybrid_3prps_real *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A, const
     hybrid_3prps_real *wrench, hybrid_3prps_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 576 mul, 483 add, 3 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 549 mul, 465 add, 3 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int hybrid_3prps_forward_dynamics(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
@@ -220,7 +220,7 @@ size_t hybrid_3prps_complete_acceleration_batch(const hybrid_3prps_model *model,
     hybrid_3prps_real *wrench, hybrid_3prps_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 294 mul, 222 add, 3 div, 3 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 291 mul, 222 add, 3 div, 3 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int hybrid_3prps_leg_reactions(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
     hybrid_3prps_real *V, const hybrid_3prps_real *A, const hybrid_3prps_real *wrench,
@@ -313,7 +313,7 @@ int hybrid_3prps_actuator_rates(const hybrid_3prps_model *model, const hybrid_3p
 size_t hybrid_3prps_actuator_rates_batch(const hybrid_3prps_model *model, size_t n, const
     hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 213 mul, 159 add, 3 div, 3 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 210 mul, 159 add, 3 div, 3 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hybrid_3prps_actuator_accelerations(const hybrid_3prps_model *model, const hybrid_3prps_real
     *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A, hybrid_3prps_real *accelerations);

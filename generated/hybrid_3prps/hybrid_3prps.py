@@ -671,9 +671,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_prps,
         (prps_Jc_2_in_axes2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5,
@@ -705,9 +705,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_prps,
         (prps_Jc_2_in_axes2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
@@ -1486,11 +1486,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1747,8 +1747,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1756,7 +1756,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1764,11 +1764,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1816,15 +1816,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 576 mul, 483 add, 3 div, 3 sqrt, 0 trig
+# dynamics: 549 mul, 465 add, 3 div, 3 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1906,39 +1905,12 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_prps_xx, M_tt_xy, M_tt_xz, M_tt_prps_yy, M_tt_yz, M_tt_prps_zz, M_ta_xx, M_ta_prps_xy,
         M_ta_prps_xz, M_ta_prps_yx, M_ta_yy, M_ta_prps_yz, M_ta_prps_zx, M_ta_prps_zy, M_ta_zz,
@@ -2015,8 +1987,10 @@ def _run_dynamics(m, X, V):
         axis_y_prps_axes2_x*prps_u_1_x + axis_y_prps_axes2_y*prps_u_1_y +
             axis_y_prps_axes2_z*prps_u_1_z
         )
+        # (prps-bias) acceleration of the connection point at zero joint accelerations
+        prps_bias_in_axes2_y = 2.0*prps_S_dot_in_axes2_x*prps_qd_2
         # (prps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        prps_rel_o_in_axes2_y = prps_u_1_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
+        prps_rel_o_in_axes2_y = prps_u_1_in_axes2_y - prps_bias_in_axes2_y
         # (prps-qdd_2_o) remainder of: acceleration of joint 2
         prps_qdd_2_o = inv_prps_q_3*prps_rel_o_in_axes2_y
         # (prps-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
@@ -2024,23 +1998,27 @@ def _run_dynamics(m, X, V):
         prps_base_frame_xz*prps_u_1_x + prps_base_frame_yz*prps_u_1_y +
             prps_base_frame_zz*prps_u_1_z - prps_g_in_axes0_z
         )
-        # (prps-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        # (prps-acc_3) acceleration of the reference point of link 3, less gravity
         prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2
         prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2
+        # (prps-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         prps_acc_3_o_in_axes2_x = (
         axis_x_prps_axes2_x*prps_u_1_x + axis_x_prps_axes2_y*prps_u_1_y +
             axis_x_prps_axes2_z*prps_u_1_z - prps_g_in_axes2_x
         )
         prps_acc_3_o_in_axes2_y = prps_u_1_in_axes2_y - prps_g_in_axes2_y
+        # (prps-phi_3) inertia force of link 3 from its turning about its reference point
+        prps_phi_3_t = prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x
         # (prps-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
-        prps_phi_3_o_in_axes2_x = (
-        prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x - prps_h_3_in_spec2_y*prps_qdd_2_o
+        prps_phi_3_o_in_axes2_x = prps_phi_3_t - prps_h_3_in_spec2_y*prps_qdd_2_o
+        # (prps-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prps_mu_2_t = (
+        prps_g_in_axes2_y*prps_h_2_in_spec2_x - prps_g_in_axes2_x*prps_h_2_in_spec2_y
         )
         # (prps-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prps_mu_2_o_in_axes2_z = (
-        prps_Jc_2_in_axes2_zz*prps_qdd_2_o + prps_acc_3_o_in_axes2_y*prps_h_3_in_spec2_x +
-            prps_g_in_axes2_x*prps_h_2_in_spec2_y - prps_acc_3_o_in_axes2_x*prps_h_3_in_spec2_y -
-            prps_g_in_axes2_y*prps_h_2_in_spec2_x
+        prps_Jc_2_in_axes2_zz*prps_qdd_2_o + prps_acc_3_o_in_axes2_y*prps_h_3_in_spec2_x -
+            prps_mu_2_t - prps_acc_3_o_in_axes2_x*prps_h_3_in_spec2_y
         )
         # (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         prps_d_Gamma_2_in_axes2_y = prps_h_3_in_spec2_x + inv_prps_q_3*prps_Jc_2_in_axes2_zz
@@ -2048,6 +2026,8 @@ def _run_dynamics(m, X, V):
         prps_T_1_o_in_axes0_z = (
         prps_acc_1_o_in_axes0_z*prps_link1_mass + prps_acc_1_o_in_axes0_z*prps_link2_mass
         )
+        # (prps-c) leg force on the platform without actuation and without the mass at the connection point
+        prps_c_t = -prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y
         # (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         prps_d_c_in_axes2_xy = inv_prps_q_3*prps_h_3_in_spec2_y
         prps_d_c_in_axes2_yy = (
@@ -2055,8 +2035,7 @@ def _run_dynamics(m, X, V):
         )
         # (prps-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prps_c_o_in_axes2_y = (
-        -inv_prps_q_3*prps_mu_2_o_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
-            prps_h_3_in_spec2_x*prps_qdd_2_o
+        prps_c_t - inv_prps_q_3*prps_mu_2_o_in_axes2_z - prps_h_3_in_spec2_x*prps_qdd_2_o
         )
         # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
         prps_Q_t = 0.5*prps_d_c_in_axes2_yy
@@ -2359,6 +2338,14 @@ def _run_M(m, X):
         prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
         prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
+        # (prps-S_dot) velocity of the connection point
+        axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        # (prps-qd_2) rate of joint 2
+        axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
         # (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         prps_d_Gamma_2_in_axes2_y = prps_h_3_in_spec2_x + inv_prps_q_3*prps_Jc_2_in_axes2_zz
         # (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
@@ -2367,22 +2354,10 @@ def _run_M(m, X):
         -inv_prps_q_3*prps_d_Gamma_2_in_axes2_y - inv_prps_q_3*prps_h_3_in_spec2_x
         )
         # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
-        axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
-        axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
         prps_Q_t = 0.5*prps_d_c_in_axes2_yy
-        prps_Q_t_2 = (
-        axis_y_prps_axes2_x*prps_Q_t + prps_d_c_in_axes2_xy*(prps_base_frame_xx*prps_c_2 +
-            prps_base_frame_xy*prps_s_2)
-        )
-        prps_Q_t_3 = (
-        axis_y_prps_axes2_y*prps_Q_t + prps_d_c_in_axes2_xy*(prps_base_frame_yx*prps_c_2 +
-            prps_base_frame_yy*prps_s_2)
-        )
-        prps_Q_t_4 = (
-        axis_y_prps_axes2_z*prps_Q_t + prps_d_c_in_axes2_xy*(prps_base_frame_zx*prps_c_2 +
-            prps_base_frame_zy*prps_s_2)
-        )
+        prps_Q_t_2 = axis_x_prps_axes2_x*prps_d_c_in_axes2_xy + axis_y_prps_axes2_x*prps_Q_t
+        prps_Q_t_3 = axis_x_prps_axes2_y*prps_d_c_in_axes2_xy + axis_y_prps_axes2_y*prps_Q_t
+        prps_Q_t_4 = axis_x_prps_axes2_z*prps_d_c_in_axes2_xy + axis_y_prps_axes2_z*prps_Q_t
         prps_Q_t_14 = axis_y_prps_axes2_x*prps_Q_t_2 - prps_Q_t_5
         prps_Q_xx = -2.0*prps_Q_t_14
         prps_Q_xy = (
@@ -2507,14 +2482,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 354 mul, 267 add, 3 div, 3 sqrt, 0 trig
+# Z: 363 mul, 273 add, 3 div, 3 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2570,6 +2545,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2578,39 +2569,12 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_prps_x, Z_t_prps_y, Z_t_prps_z, Z_a_prps_x, Z_a_prps_y, Z_a_prps_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -2681,8 +2645,10 @@ def _run_Z(m, X, V):
         axis_y_prps_axes2_x*prps_u_1_x + axis_y_prps_axes2_y*prps_u_1_y +
             axis_y_prps_axes2_z*prps_u_1_z
         )
+        # (prps-bias) acceleration of the connection point at zero joint accelerations
+        prps_bias_in_axes2_y = 2.0*prps_S_dot_in_axes2_x*prps_qd_2
         # (prps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        prps_rel_o_in_axes2_y = prps_u_1_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
+        prps_rel_o_in_axes2_y = prps_u_1_in_axes2_y - prps_bias_in_axes2_y
         # (prps-qdd_2_o) remainder of: acceleration of joint 2
         prps_qdd_2_o = inv_prps_q_3*prps_rel_o_in_axes2_y
         # (prps-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
@@ -2690,32 +2656,37 @@ def _run_Z(m, X, V):
         prps_base_frame_xz*prps_u_1_x + prps_base_frame_yz*prps_u_1_y +
             prps_base_frame_zz*prps_u_1_z - prps_g_in_axes0_z
         )
-        # (prps-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        # (prps-acc_3) acceleration of the reference point of link 3, less gravity
         prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2
         prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2
+        # (prps-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         prps_acc_3_o_in_axes2_x = (
         axis_x_prps_axes2_x*prps_u_1_x + axis_x_prps_axes2_y*prps_u_1_y +
             axis_x_prps_axes2_z*prps_u_1_z - prps_g_in_axes2_x
         )
         prps_acc_3_o_in_axes2_y = prps_u_1_in_axes2_y - prps_g_in_axes2_y
+        # (prps-phi_3) inertia force of link 3 from its turning about its reference point
+        prps_phi_3_t = prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x
         # (prps-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
-        prps_phi_3_o_in_axes2_x = (
-        prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x - prps_h_3_in_spec2_y*prps_qdd_2_o
+        prps_phi_3_o_in_axes2_x = prps_phi_3_t - prps_h_3_in_spec2_y*prps_qdd_2_o
+        # (prps-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prps_mu_2_t = (
+        prps_g_in_axes2_y*prps_h_2_in_spec2_x - prps_g_in_axes2_x*prps_h_2_in_spec2_y
         )
         # (prps-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prps_mu_2_o_in_axes2_z = (
-        prps_Jc_2_in_axes2_zz*prps_qdd_2_o + prps_acc_3_o_in_axes2_y*prps_h_3_in_spec2_x +
-            prps_g_in_axes2_x*prps_h_2_in_spec2_y - prps_acc_3_o_in_axes2_x*prps_h_3_in_spec2_y -
-            prps_g_in_axes2_y*prps_h_2_in_spec2_x
+        prps_Jc_2_in_axes2_zz*prps_qdd_2_o + prps_acc_3_o_in_axes2_y*prps_h_3_in_spec2_x -
+            prps_mu_2_t - prps_acc_3_o_in_axes2_x*prps_h_3_in_spec2_y
         )
         # (prps-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
         prps_T_1_o_in_axes0_z = (
         prps_acc_1_o_in_axes0_z*prps_link1_mass + prps_acc_1_o_in_axes0_z*prps_link2_mass
         )
+        # (prps-c) leg force on the platform without actuation and without the mass at the connection point
+        prps_c_t = -prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y
         # (prps-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prps_c_o_in_axes2_y = (
-        -inv_prps_q_3*prps_mu_2_o_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
-            prps_h_3_in_spec2_x*prps_qdd_2_o
+        prps_c_t - inv_prps_q_3*prps_mu_2_o_in_axes2_z - prps_h_3_in_spec2_x*prps_qdd_2_o
         )
         # (prps-U) velocity and gravity terms of the leg force
         prps_U_x = (
@@ -2840,18 +2811,18 @@ def _run_H(m, X):
         prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
         prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
-        # (prps-w_3) reciprocal vector 3
-        prps_w_3_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
-        prps_w_3_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
-        prps_w_3_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        # (prps-S_dot) velocity of the connection point
+        axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
         # (prps-H_a_1) moment of the column's unit force about the platform origin
         prps_H_a_1_x = prps_base_frame_zz*prps_q_y - prps_base_frame_yz*prps_q_z
         prps_H_a_1_y = prps_base_frame_xz*prps_q_z - prps_base_frame_zz*prps_q_x
         prps_H_a_1_z = prps_base_frame_yz*prps_q_x - prps_base_frame_xz*prps_q_y
         # (prps-H_a_3) moment of the column's unit force about the platform origin
-        prps_H_a_3_x = prps_q_y*prps_w_3_z - prps_q_z*prps_w_3_y
-        prps_H_a_3_y = prps_q_z*prps_w_3_x - prps_q_x*prps_w_3_z
-        prps_H_a_3_z = prps_q_x*prps_w_3_y - prps_q_y*prps_w_3_x
+        prps_H_a_3_x = axis_x_prps_axes2_z*prps_q_y - axis_x_prps_axes2_y*prps_q_z
+        prps_H_a_3_y = axis_x_prps_axes2_x*prps_q_z - axis_x_prps_axes2_z*prps_q_x
+        prps_H_a_3_z = axis_x_prps_axes2_y*prps_q_x - axis_x_prps_axes2_x*prps_q_y
         ok = (
         ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
             0.75)
@@ -2865,9 +2836,9 @@ def _run_H(m, X):
         out_H[_H_prps[4][leg]] = prps_H_a_1_y
         out_H[_H_prps[5][leg]] = prps_H_a_1_z
         # (prps-w_3) reciprocal vector 3
-        out_H[_H_prps[6][leg]] = prps_w_3_x
-        out_H[_H_prps[7][leg]] = prps_w_3_y
-        out_H[_H_prps[8][leg]] = prps_w_3_z
+        out_H[_H_prps[6][leg]] = axis_x_prps_axes2_x
+        out_H[_H_prps[7][leg]] = axis_x_prps_axes2_y
+        out_H[_H_prps[8][leg]] = axis_x_prps_axes2_z
         # (prps-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_prps[9][leg]] = prps_H_a_3_x
         out_H[_H_prps[10][leg]] = prps_H_a_3_y
@@ -2875,7 +2846,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 432 mul, 339 add, 3 div, 3 sqrt, 0 trig
+# required: 423 mul, 330 add, 3 div, 3 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -2949,9 +2920,22 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -2964,21 +2948,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
-        f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
-        f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
-        f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*m_star - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -3081,53 +3053,54 @@ def _run_required(m, X, V, A):
         )
         # (prps-W_2) centripetal tensor of link 2
         prps_W_2_in_axes2_xx = -prps_qd_2*prps_qd_2
-        # (prps-a_p) acceleration of the connection point without its centripetal part
-        prps_a_p_x = t_ddot_x + alpha_y*prps_q_z - alpha_z*prps_q_y
-        prps_a_p_y = t_ddot_y + alpha_z*prps_q_x - alpha_x*prps_q_z
-        prps_a_p_z = t_ddot_z + alpha_x*prps_q_y - alpha_y*prps_q_x
         # (prps-S_ddot) acceleration of the connection point
-        prps_S_ddot_x = prps_a_p_x + omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2
-        prps_S_ddot_y = prps_a_p_y + omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3
-        prps_S_ddot_z = prps_a_p_z + omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t
+        prps_S_ddot_x = t_ddot_x + B_p_xy*prps_q_y + B_p_xz*prps_q_z - W_p_t_4*prps_q_x
+        prps_S_ddot_y = t_ddot_y + B_p_yx*prps_q_x + B_p_yz*prps_q_z - W_p_t_5*prps_q_y
+        prps_S_ddot_z = t_ddot_z + B_p_zx*prps_q_x + B_p_zy*prps_q_y - W_p_t_6*prps_q_z
+        prps_S_ddot_in_axes2_x = (
+        axis_x_prps_axes2_x*prps_S_ddot_x + axis_x_prps_axes2_y*prps_S_ddot_y +
+            axis_x_prps_axes2_z*prps_S_ddot_z
+        )
         prps_S_ddot_in_axes2_y = (
         axis_y_prps_axes2_x*prps_S_ddot_x + axis_y_prps_axes2_y*prps_S_ddot_y +
             axis_y_prps_axes2_z*prps_S_ddot_z
         )
+        prps_S_ddot_in_axes2_z = (
+        prps_S_ddot_x*prps_base_frame_xz + prps_S_ddot_y*prps_base_frame_yz +
+            prps_S_ddot_z*prps_base_frame_zz
+        )
+        # (prps-bias) acceleration of the connection point at zero joint accelerations
+        prps_bias_in_axes2_y = 2.0*prps_S_dot_in_axes2_x*prps_qd_2
         # (prps-rel) acceleration of the connection point left to the joint accelerations
-        prps_rel_in_axes2_y = prps_S_ddot_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
+        prps_rel_in_axes2_y = prps_S_ddot_in_axes2_y - prps_bias_in_axes2_y
         # (prps-qdd_2) acceleration of joint 2
         prps_qdd_2 = inv_prps_q_3*prps_rel_in_axes2_y
         # (prps-acc_1) acceleration of the reference point of link 1, less gravity
-        prps_acc_1_in_axes0_z = (
-        prps_S_ddot_x*prps_base_frame_xz + prps_S_ddot_y*prps_base_frame_yz +
-            prps_S_ddot_z*prps_base_frame_zz - prps_g_in_axes0_z
-        )
+        prps_acc_1_in_axes0_z = prps_S_ddot_in_axes2_z - prps_g_in_axes0_z
         # (prps-acc_3) acceleration of the reference point of link 3, less gravity
         prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2
         prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2
-        prps_acc_3_in_axes2_x = (
-        axis_x_prps_axes2_x*prps_S_ddot_x + axis_x_prps_axes2_y*prps_S_ddot_y +
-            axis_x_prps_axes2_z*prps_S_ddot_z - prps_g_in_axes2_x
-        )
+        prps_acc_3_in_axes2_x = prps_S_ddot_in_axes2_x - prps_g_in_axes2_x
         prps_acc_3_in_axes2_y = prps_S_ddot_in_axes2_y - prps_g_in_axes2_y
         # (prps-phi_3) inertia force of link 3 from its turning about its reference point
-        prps_phi_3_in_axes2_x = (
-        prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x - prps_h_3_in_spec2_y*prps_qdd_2
-        )
+        prps_phi_3_t = prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x
+        prps_phi_3_in_axes2_x = prps_phi_3_t - prps_h_3_in_spec2_y*prps_qdd_2
         # (prps-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prps_mu_2_t = (
+        prps_g_in_axes2_y*prps_h_2_in_spec2_x - prps_g_in_axes2_x*prps_h_2_in_spec2_y
+        )
         prps_mu_2_in_axes2_z = (
-        prps_Jc_2_in_axes2_zz*prps_qdd_2 + prps_acc_3_in_axes2_y*prps_h_3_in_spec2_x +
-            prps_g_in_axes2_x*prps_h_2_in_spec2_y - prps_acc_3_in_axes2_x*prps_h_3_in_spec2_y -
-            prps_g_in_axes2_y*prps_h_2_in_spec2_x
+        prps_Jc_2_in_axes2_zz*prps_qdd_2 + prps_acc_3_in_axes2_y*prps_h_3_in_spec2_x - prps_mu_2_t
+            - prps_acc_3_in_axes2_x*prps_h_3_in_spec2_y
         )
         # (prps-T_1) inertia force of the links from 1 outwards, the last link left out
         prps_T_1_in_axes0_z = (
         prps_acc_1_in_axes0_z*prps_link1_mass + prps_acc_1_in_axes0_z*prps_link2_mass
         )
         # (prps-c) leg force on the platform without actuation and without the mass at the connection point
+        prps_c_t = -prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y
         prps_c_in_axes2_y = (
-        -inv_prps_q_3*prps_mu_2_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
-            prps_h_3_in_spec2_x*prps_qdd_2
+        prps_c_t - inv_prps_q_3*prps_mu_2_in_axes2_z - prps_h_3_in_spec2_x*prps_qdd_2
         )
         prps_c_x = (
         axis_y_prps_axes2_x*prps_c_in_axes2_y - axis_x_prps_axes2_x*prps_phi_3_in_axes2_x -
@@ -3250,18 +3223,18 @@ def _run_inverse_kinematics(m, X):
             prps_branch_2, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
         # (prps-S) from the base point to the connection point
-        prps_S_x = (
-        t_x + R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
-            - prps_base_point_x
+        prps_q_x = (
+        R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        prps_S_y = (
-        t_y + R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
-            - prps_base_point_y
+        prps_q_y = (
+        R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        prps_S_z = (
-        t_z + R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
-            - prps_base_point_z
+        prps_q_z = (
+        R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
+        prps_S_x = prps_q_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_z + t_z - prps_base_point_z
         prps_S_in_axes0_z = (
         prps_S_x*prps_base_frame_xz + prps_S_y*prps_base_frame_yz + prps_S_z*prps_base_frame_zz
         )
@@ -3274,9 +3247,13 @@ def _run_inverse_kinematics(m, X):
         # (prps-q_3) displacement of joint 3
         prps_q_3_t = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
         prps_q_3 = prps_branch_2*sqrt(prps_q_3_t)
-        # (prps-q_2) displacement of joint 2
+        # (prps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prps_q_3 = 1.0/prps_q_3
-        prps_q_2 = atan2(inv_prps_q_3*prps_S_in_axes0_y, inv_prps_q_3*prps_S_in_axes0_x)
+        prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
+        # (prps-s_2) sine of the angle of joint 2 from its reference direction
+        prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
+        # (prps-q_2) displacement of joint 2
+        prps_q_2 = atan2(prps_s_2, prps_c_2)
         ok = (
         ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
             0.75)
@@ -3379,23 +3356,30 @@ def _run_joint_rates(m, X, V):
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
         prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
         # (prps-S_dot) velocity of the connection point
-        prps_S_dot_x = t_dot_x + omega_y*prps_q_z - omega_z*prps_q_y
-        prps_S_dot_y = t_dot_y + omega_z*prps_q_x - omega_x*prps_q_z
-        prps_S_dot_z = t_dot_z + omega_x*prps_q_y - omega_y*prps_q_x
+        axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        prps_S_dot_t = omega_y*prps_q_z - omega_z*prps_q_y
+        prps_S_dot_t_2 = omega_z*prps_q_x - omega_x*prps_q_z
+        prps_S_dot_t_3 = omega_x*prps_q_y - omega_y*prps_q_x
+        prps_S_dot_x = prps_S_dot_t + t_dot_x
+        prps_S_dot_y = prps_S_dot_t_2 + t_dot_y
+        prps_S_dot_z = prps_S_dot_t_3 + t_dot_z
         prps_S_dot_in_axes2_x = (
-        prps_S_dot_x*(prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2) +
-            prps_S_dot_y*(prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2) +
-            prps_S_dot_z*(prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2)
+        axis_x_prps_axes2_x*prps_S_dot_x + axis_x_prps_axes2_y*prps_S_dot_y +
+            axis_x_prps_axes2_z*prps_S_dot_z
         )
         prps_S_dot_in_axes2_z = (
         prps_S_dot_x*prps_base_frame_xz + prps_S_dot_y*prps_base_frame_yz +
             prps_S_dot_z*prps_base_frame_zz
         )
         # (prps-qd_2) rate of joint 2
+        axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
         prps_qd_2 = (
-        inv_prps_q_3*(prps_S_dot_x*(prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2) +
-            prps_S_dot_y*(prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2) +
-            prps_S_dot_z*(prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2))
+        inv_prps_q_3*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
+            axis_y_prps_axes2_z*prps_S_dot_z)
         )
         ok = (
         ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
@@ -3410,7 +3394,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 213 mul, 159 add, 3 div, 3 sqrt, 0 trig
+# joint_accelerations: 210 mul, 159 add, 3 div, 3 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -3477,6 +3461,23 @@ def _run_joint_accelerations(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
@@ -3533,27 +3534,29 @@ def _run_joint_accelerations(m, X, V, A):
         inv_prps_q_3*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
             axis_y_prps_axes2_z*prps_S_dot_z)
         )
-        # (prps-a_p) acceleration of the connection point without its centripetal part
-        prps_a_p_x = t_ddot_x + alpha_y*prps_q_z - alpha_z*prps_q_y
-        prps_a_p_y = t_ddot_y + alpha_z*prps_q_x - alpha_x*prps_q_z
-        prps_a_p_z = t_ddot_z + alpha_x*prps_q_y - alpha_y*prps_q_x
+        # (prps-W_2) centripetal tensor of link 2
+        prps_W_2_in_axes2_xx = -prps_qd_2*prps_qd_2
         # (prps-S_ddot) acceleration of the connection point
-        prps_S_ddot_x = prps_a_p_x + omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2
-        prps_S_ddot_y = prps_a_p_y + omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3
-        prps_S_ddot_z = prps_a_p_z + omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t
+        prps_S_ddot_x = t_ddot_x + B_p_xy*prps_q_y + B_p_xz*prps_q_z - W_p_t_4*prps_q_x
+        prps_S_ddot_y = t_ddot_y + B_p_yx*prps_q_x + B_p_yz*prps_q_z - W_p_t_5*prps_q_y
+        prps_S_ddot_z = t_ddot_z + B_p_zx*prps_q_x + B_p_zy*prps_q_y - W_p_t_6*prps_q_z
+        prps_S_ddot_in_axes2_x = (
+        axis_x_prps_axes2_x*prps_S_ddot_x + axis_x_prps_axes2_y*prps_S_ddot_y +
+            axis_x_prps_axes2_z*prps_S_ddot_z
+        )
+        prps_S_ddot_in_axes2_y = (
+        axis_y_prps_axes2_x*prps_S_ddot_x + axis_y_prps_axes2_y*prps_S_ddot_y +
+            axis_y_prps_axes2_z*prps_S_ddot_z
+        )
         prps_S_ddot_in_axes2_z = (
         prps_S_ddot_x*prps_base_frame_xz + prps_S_ddot_y*prps_base_frame_yz +
             prps_S_ddot_z*prps_base_frame_zz
         )
+        # (prps-bias) acceleration of the connection point at zero joint accelerations
+        prps_bias_in_axes2_y = 2.0*prps_S_dot_in_axes2_x*prps_qd_2
         # (prps-rel) acceleration of the connection point left to the joint accelerations
-        prps_rel_in_axes2_x = (
-        axis_x_prps_axes2_x*prps_S_ddot_x + axis_x_prps_axes2_y*prps_S_ddot_y +
-            axis_x_prps_axes2_z*prps_S_ddot_z + prps_q_3*prps_qd_2*prps_qd_2
-        )
-        prps_rel_in_axes2_y = (
-        axis_y_prps_axes2_x*prps_S_ddot_x + axis_y_prps_axes2_y*prps_S_ddot_y +
-            axis_y_prps_axes2_z*prps_S_ddot_z - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
-        )
+        prps_rel_in_axes2_x = prps_S_ddot_in_axes2_x - prps_W_2_in_axes2_xx*prps_q_3
+        prps_rel_in_axes2_y = prps_S_ddot_in_axes2_y - prps_bias_in_axes2_y
         # (prps-qdd_2) acceleration of joint 2
         prps_qdd_2 = inv_prps_q_3*prps_rel_in_axes2_y
         ok = (
@@ -3569,7 +3572,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 294 mul, 222 add, 3 div, 3 sqrt, 0 trig
+# legs: 291 mul, 222 add, 3 div, 3 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -3637,6 +3640,23 @@ def _run_legs(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         prps_Jc_2_in_axes2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
@@ -3698,55 +3718,57 @@ def _run_legs(m, X, V, A):
         )
         # (prps-W_2) centripetal tensor of link 2
         prps_W_2_in_axes2_xx = -prps_qd_2*prps_qd_2
-        # (prps-a_p) acceleration of the connection point without its centripetal part
-        prps_a_p_x = t_ddot_x + alpha_y*prps_q_z - alpha_z*prps_q_y
-        prps_a_p_y = t_ddot_y + alpha_z*prps_q_x - alpha_x*prps_q_z
-        prps_a_p_z = t_ddot_z + alpha_x*prps_q_y - alpha_y*prps_q_x
         # (prps-S_ddot) acceleration of the connection point
-        prps_S_ddot_x = prps_a_p_x + omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2
-        prps_S_ddot_y = prps_a_p_y + omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3
-        prps_S_ddot_z = prps_a_p_z + omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t
+        prps_S_ddot_x = t_ddot_x + B_p_xy*prps_q_y + B_p_xz*prps_q_z - W_p_t_4*prps_q_x
+        prps_S_ddot_y = t_ddot_y + B_p_yx*prps_q_x + B_p_yz*prps_q_z - W_p_t_5*prps_q_y
+        prps_S_ddot_z = t_ddot_z + B_p_zx*prps_q_x + B_p_zy*prps_q_y - W_p_t_6*prps_q_z
+        prps_S_ddot_in_axes2_x = (
+        axis_x_prps_axes2_x*prps_S_ddot_x + axis_x_prps_axes2_y*prps_S_ddot_y +
+            axis_x_prps_axes2_z*prps_S_ddot_z
+        )
         prps_S_ddot_in_axes2_y = (
         axis_y_prps_axes2_x*prps_S_ddot_x + axis_y_prps_axes2_y*prps_S_ddot_y +
             axis_y_prps_axes2_z*prps_S_ddot_z
         )
+        prps_S_ddot_in_axes2_z = (
+        prps_S_ddot_x*prps_base_frame_xz + prps_S_ddot_y*prps_base_frame_yz +
+            prps_S_ddot_z*prps_base_frame_zz
+        )
+        # (prps-bias) acceleration of the connection point at zero joint accelerations
+        prps_bias_in_axes2_y = 2.0*prps_S_dot_in_axes2_x*prps_qd_2
         # (prps-rel) acceleration of the connection point left to the joint accelerations
-        prps_rel_in_axes2_y = prps_S_ddot_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
+        prps_rel_in_axes2_y = prps_S_ddot_in_axes2_y - prps_bias_in_axes2_y
         # (prps-qdd_2) acceleration of joint 2
         prps_qdd_2 = inv_prps_q_3*prps_rel_in_axes2_y
         # (prps-acc_1) acceleration of the reference point of link 1, less gravity
-        prps_acc_1_in_axes0_z = (
-        prps_S_ddot_x*prps_base_frame_xz + prps_S_ddot_y*prps_base_frame_yz +
-            prps_S_ddot_z*prps_base_frame_zz - prps_g_in_axes0_z
-        )
+        prps_acc_1_in_axes0_z = prps_S_ddot_in_axes2_z - prps_g_in_axes0_z
         # (prps-acc_3) acceleration of the reference point of link 3, less gravity
         prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2
         prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2
-        prps_acc_3_in_axes2_x = (
-        axis_x_prps_axes2_x*prps_S_ddot_x + axis_x_prps_axes2_y*prps_S_ddot_y +
-            axis_x_prps_axes2_z*prps_S_ddot_z - prps_g_in_axes2_x
-        )
+        prps_acc_3_in_axes2_x = prps_S_ddot_in_axes2_x - prps_g_in_axes2_x
         prps_acc_3_in_axes2_y = prps_S_ddot_in_axes2_y - prps_g_in_axes2_y
+        # (prps-phi_3) inertia force of link 3 from its turning about its reference point
+        prps_phi_3_t = prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x
+        prps_phi_3_in_axes2_x = prps_phi_3_t - prps_h_3_in_spec2_y*prps_qdd_2
         # (prps-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prps_mu_2_t = (
+        prps_g_in_axes2_y*prps_h_2_in_spec2_x - prps_g_in_axes2_x*prps_h_2_in_spec2_y
+        )
         prps_mu_2_in_axes2_z = (
-        prps_Jc_2_in_axes2_zz*prps_qdd_2 + prps_acc_3_in_axes2_y*prps_h_3_in_spec2_x +
-            prps_g_in_axes2_x*prps_h_2_in_spec2_y - prps_acc_3_in_axes2_x*prps_h_3_in_spec2_y -
-            prps_g_in_axes2_y*prps_h_2_in_spec2_x
+        prps_Jc_2_in_axes2_zz*prps_qdd_2 + prps_acc_3_in_axes2_y*prps_h_3_in_spec2_x - prps_mu_2_t
+            - prps_acc_3_in_axes2_x*prps_h_3_in_spec2_y
         )
         # (prps-T_1) inertia force of the links from 1 outwards, the last link left out
         prps_T_1_in_axes0_z = (
         prps_acc_1_in_axes0_z*prps_link1_mass + prps_acc_1_in_axes0_z*prps_link2_mass
         )
         # (prps-c) leg force on the platform without actuation and without the mass at the connection point
+        prps_c_t = -prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y
         prps_c_in_axes2_y = (
-        -inv_prps_q_3*prps_mu_2_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
-            prps_h_3_in_spec2_x*prps_qdd_2
+        prps_c_t - inv_prps_q_3*prps_mu_2_in_axes2_z - prps_h_3_in_spec2_x*prps_qdd_2
         )
         # (prps-c_true) leg force on the platform without actuation, the last link's mass included
-        prps_c_true_in_axes2_x = (
-        prps_h_3_in_spec2_y*prps_qdd_2 - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x -
-            prps_acc_3_in_axes2_x*prps_link3_mass
-        )
+        prps_c_true_in_axes2_x = -prps_phi_3_in_axes2_x - prps_acc_3_in_axes2_x*prps_link3_mass
         prps_c_true_in_axes2_y = prps_c_in_axes2_y - prps_acc_3_in_axes2_y*prps_link3_mass
         prps_c_true_in_axes2_z = -prps_T_1_in_axes0_z - prps_acc_1_in_axes0_z*prps_link3_mass
         prps_c_true_x = (
@@ -3825,12 +3847,14 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
+    gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
+        m_star*t_z)
     )
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
@@ -3846,18 +3870,18 @@ def _run_potential(m, X):
             prps_potential_t_2, prps_potential_t_3, prps_potential_t_4,
         ) = k
         # (prps-S) from the base point to the connection point
-        prps_S_x = (
-        t_x + R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
-            - prps_base_point_x
+        prps_q_x = (
+        R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        prps_S_y = (
-        t_y + R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
-            - prps_base_point_y
+        prps_q_y = (
+        R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        prps_S_z = (
-        t_z + R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
-            - prps_base_point_z
+        prps_q_z = (
+        R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
+        prps_S_x = prps_q_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_z + t_z - prps_base_point_z
         prps_S_in_axes0_z = (
         prps_S_x*prps_base_frame_xz + prps_S_y*prps_base_frame_yz + prps_S_z*prps_base_frame_zz
         )
@@ -3985,10 +4009,10 @@ def _run_condition(m, X):
         prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
         prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
-        # (prps-w_3) reciprocal vector 3
-        prps_w_3_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
-        prps_w_3_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
-        prps_w_3_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        # (prps-S_dot) velocity of the connection point
+        axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
         # (prps-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prps_pivot_size = abs(prps_q_3_t)
         prps_pivot_size_2 = abs(prps_q_3)
@@ -4000,9 +4024,9 @@ def _run_condition(m, X):
         prps_H_a_1_y = prps_base_frame_xz*prps_q_z - prps_base_frame_zz*prps_q_x
         prps_H_a_1_z = prps_base_frame_yz*prps_q_x - prps_base_frame_xz*prps_q_y
         # (prps-H_a_3) moment of the column's unit force about the platform origin
-        prps_H_a_3_x = prps_q_y*prps_w_3_z - prps_q_z*prps_w_3_y
-        prps_H_a_3_y = prps_q_z*prps_w_3_x - prps_q_x*prps_w_3_z
-        prps_H_a_3_z = prps_q_x*prps_w_3_y - prps_q_y*prps_w_3_x
+        prps_H_a_3_x = axis_x_prps_axes2_z*prps_q_y - axis_x_prps_axes2_y*prps_q_z
+        prps_H_a_3_y = axis_x_prps_axes2_x*prps_q_z - axis_x_prps_axes2_z*prps_q_x
+        prps_H_a_3_z = axis_x_prps_axes2_y*prps_q_x - axis_x_prps_axes2_x*prps_q_y
         # (spread) rms distance of the platform points from their centroid
         prps_spread_t = b_c_in_platform_x - prps_platform_point_x
         prps_spread_t_2 = b_c_in_platform_y - prps_platform_point_y
@@ -4026,9 +4050,9 @@ def _run_condition(m, X):
         out_H[_H_prps[4][leg]] = prps_H_a_1_y
         out_H[_H_prps[5][leg]] = prps_H_a_1_z
         # (prps-w_3) reciprocal vector 3
-        out_H[_H_prps[6][leg]] = prps_w_3_x
-        out_H[_H_prps[7][leg]] = prps_w_3_y
-        out_H[_H_prps[8][leg]] = prps_w_3_z
+        out_H[_H_prps[6][leg]] = axis_x_prps_axes2_x
+        out_H[_H_prps[7][leg]] = axis_x_prps_axes2_y
+        out_H[_H_prps[8][leg]] = axis_x_prps_axes2_z
         # (prps-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_prps[9][leg]] = prps_H_a_3_x
         out_H[_H_prps[10][leg]] = prps_H_a_3_y
@@ -4287,11 +4311,11 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[[0, 2, 3, 5, 6, 8]]
-    gap = q_actuated - q_of_inverse_kinematics_from_0
-    return (gap,)
+    residual = q_actuated - q_of_inverse_kinematics_from_0
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -4300,7 +4324,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

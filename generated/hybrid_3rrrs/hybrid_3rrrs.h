@@ -117,19 +117,19 @@ typedef struct {
             rrrs_J_2_in_spec2_yy[4], rrrs_J_2_in_spec2_yz[4], rrrs_J_3_in_spec3_xx[4],
             rrrs_J_3_in_spec3_xy[4], rrrs_J_3_in_spec3_xz[4], rrrs_J_3_in_spec3_yy[4],
             rrrs_J_3_in_spec3_yz[4], rrrs_J_3_in_spec3_zz[4], rrrs_Jc_2_in_axes2_zz[4],
-            rrrs_Kd_2_t[4], rrrs_Kd_2_t_2[4], rrrs_Sigma_2_in_axes2_xx[4],
-            rrrs_Sigma_2_in_axes2_yy[4], rrrs_Sigma_2_in_axes2_zz[4], rrrs_Sigma_3_in_axes3_xx[4],
-            rrrs_Sigma_3_in_axes3_yy[4], rrrs_Sigma_3_in_axes3_zz[4], rrrs_base_frame_xx[4],
-            rrrs_base_frame_xy[4], rrrs_base_frame_xz[4], rrrs_base_frame_yx[4],
-            rrrs_base_frame_yy[4], rrrs_base_frame_yz[4], rrrs_base_frame_zx[4],
-            rrrs_base_frame_zy[4], rrrs_base_frame_zz[4], rrrs_base_point_x[4], rrrs_base_point_y[4],
-            rrrs_base_point_z[4], rrrs_branch_1[4], rrrs_branch_2[4], rrrs_d_Gamma_3_in_axes3_y[4],
-            rrrs_d_Gamma_3_t[4], rrrs_d_c_in_axes3_yy[4], rrrs_d_phi_3_t[4], rrrs_g_in_axes1_z[4],
-            rrrs_h_1_in_spec1_x[4], rrrs_h_1_in_spec1_y[4], rrrs_h_1_in_spec1_z[4],
-            rrrs_h_2_in_spec2_x[4], rrrs_h_2_in_spec2_y[4], rrrs_h_2_in_spec2_z[4],
-            rrrs_h_3_in_spec3_x[4], rrrs_h_3_in_spec3_y[4], rrrs_h_3_in_spec3_z[4],
-            rrrs_joint2_offset_x[4], rrrs_joint3_offset_x[4], rrrs_link1_mass[4], rrrs_link2_mass[4],
-            rrrs_link3_mass[4], rrrs_mu_2_t[4], rrrs_mu_2_t_2[4], rrrs_platform_joint_offset_x[4],
+            rrrs_Sigma_2_in_axes2_xx[4], rrrs_Sigma_2_in_axes2_yy[4], rrrs_Sigma_2_in_axes2_zz[4],
+            rrrs_Sigma_3_in_axes3_xx[4], rrrs_Sigma_3_in_axes3_yy[4], rrrs_Sigma_3_in_axes3_zz[4],
+            rrrs_base_frame_xx[4], rrrs_base_frame_xy[4], rrrs_base_frame_xz[4],
+            rrrs_base_frame_yx[4], rrrs_base_frame_yy[4], rrrs_base_frame_yz[4],
+            rrrs_base_frame_zx[4], rrrs_base_frame_zy[4], rrrs_base_frame_zz[4], rrrs_base_point_x[4],
+            rrrs_base_point_y[4], rrrs_base_point_z[4], rrrs_branch_1[4], rrrs_branch_2[4],
+            rrrs_d_Gamma_3_in_axes3_y[4], rrrs_d_Gamma_3_t[4], rrrs_d_c_in_axes3_yy[4],
+            rrrs_d_phi_3_t[4], rrrs_g_in_axes1_z[4], rrrs_h_1_in_spec1_x[4], rrrs_h_1_in_spec1_y[4],
+            rrrs_h_1_in_spec1_z[4], rrrs_h_2_in_spec2_x[4], rrrs_h_2_in_spec2_y[4],
+            rrrs_h_2_in_spec2_z[4], rrrs_h_2_t[4], rrrs_h_2_t_2[4], rrrs_h_3_in_spec3_x[4],
+            rrrs_h_3_in_spec3_y[4], rrrs_h_3_in_spec3_z[4], rrrs_joint2_offset_x[4],
+            rrrs_joint3_offset_x[4], rrrs_link1_mass[4], rrrs_link2_mass[4], rrrs_link3_mass[4],
+            rrrs_mu_2_t[4], rrrs_mu_2_t_2[4], rrrs_platform_joint_offset_x[4],
             rrrs_platform_point_x[4], rrrs_platform_point_y[4], rrrs_platform_point_z[4],
             rrrs_potential_t[4], rrrs_potential_t_2[4], rrrs_potential_t_3[4], rrrs_potential_t_4[4],
             rrrs_rho2_2_t[4], rrrs_size[4], rrrs_size_t_3[4], rrrs_w_3_in_axes3_y[4];
@@ -160,7 +160,7 @@ int hybrid_3rrrs_M(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, 
 size_t hybrid_3rrrs_M_batch(const hybrid_3rrrs_model *model, size_t n, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *M, int *status);
 
-/* Velocity and gravity terms Z. 924 mul, 675 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 933 mul, 681 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hybrid_3rrrs_Z(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *Z);
@@ -181,14 +181,14 @@ int hybrid_3rrrs_inverse_kinematics(const hybrid_3rrrs_model *model, const hybri
 size_t hybrid_3rrrs_inverse_kinematics_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, hybrid_3rrrs_real *q, int *status);
 
-/* Rates of all joints. 321 mul, 189 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 327 mul, 189 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int hybrid_3rrrs_joint_rates(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates);
 size_t hybrid_3rrrs_joint_rates_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates, int *status);
 
-/* Accelerations of all joints. 534 mul, 321 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 531 mul, 321 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hybrid_3rrrs_joint_accelerations(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
     const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, hybrid_3rrrs_real *accelerations);
@@ -196,7 +196,7 @@ size_t hybrid_3rrrs_joint_accelerations_batch(const hybrid_3rrrs_model *model, s
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A,
     hybrid_3rrrs_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1362 mul, 1026 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1335 mul, 1008 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3rrrs_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *M, hybrid_3rrrs_real *Z, hybrid_3rrrs_real *H);
@@ -204,7 +204,7 @@ size_t hybrid_3rrrs_dynamics_batch(const hybrid_3rrrs_model *model, size_t n, co
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *M, hybrid_3rrrs_real *Z,
     hybrid_3rrrs_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1020 mul, 747 add, 12 div, 6 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1011 mul, 738 add, 12 div, 6 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hybrid_3rrrs_inverse_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
@@ -214,7 +214,7 @@ size_t hybrid_3rrrs_inverse_dynamics_batch(const hybrid_3rrrs_model *model, size
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const
     hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1362 mul, 1026 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 1335 mul, 1008 add, 12 div, 6
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hybrid_3rrrs_forward_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
@@ -235,7 +235,7 @@ size_t hybrid_3rrrs_complete_acceleration_batch(const hybrid_3rrrs_model *model,
     hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 882 mul, 630 add, 12 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 879 mul, 630 add, 12 div, 6 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int hybrid_3rrrs_leg_reactions(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const hybrid_3rrrs_real *wrench,
@@ -321,14 +321,14 @@ int hybrid_3rrrs_actuator_positions(const hybrid_3rrrs_model *model, const hybri
 size_t hybrid_3rrrs_actuator_positions_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, hybrid_3rrrs_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 321 mul, 189 add, 12 div, 6 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 327 mul, 189 add, 12 div, 6 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int hybrid_3rrrs_actuator_rates(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates);
 size_t hybrid_3rrrs_actuator_rates_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 534 mul, 321 add, 12 div, 6 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 531 mul, 321 add, 12 div, 6 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hybrid_3rrrs_actuator_accelerations(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real
     *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, hybrid_3rrrs_real *accelerations);

@@ -599,6 +599,8 @@ def _prepare(p):
     )
     rrrs_J_1_in_spec1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t - rrrs_J_1_t_2)
     # (rrrs-h_2) first moment of link 2 about the origin of link 2
+    rrrs_h_2_t = 0.5*rrrs_size_t
+    rrrs_h_2_t_2 = 0.5*rrrs_size_t_2
     rrrs_h_2_in_spec2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
     rrrs_h_2_in_spec2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
     rrrs_h_2_in_spec2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
@@ -646,9 +648,6 @@ def _prepare(p):
         rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
     )
     rrrs_J_3_in_spec3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 - rrrs_J_3_t_4)
-    # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    rrrs_Kd_2_t = 0.5*rrrs_size_t
-    rrrs_Kd_2_t_2 = 0.5*rrrs_size_t_2
     # (rrrs-rho2_2) squared amplitude
     rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3
     # (rrrs-x_3) from the origin of joint 3 to the connection point
@@ -768,25 +767,25 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
                     rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
                     rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
                     rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy,
-                    rrrs_d_phi_3_t, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
-                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Sigma_2_in_axes2_xx,
+                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y,
+                    rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_g_in_axes1_z,
+                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
@@ -805,13 +804,13 @@ def _prepare(p):
                     rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
                     rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
                     rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy,
-                    rrrs_d_phi_3_t, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y,
+                    rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_h_2_t,
+                    rrrs_h_2_t_2, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
                     rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
                     rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
@@ -820,22 +819,22 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
                     rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
-                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
+                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
+                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
@@ -848,11 +847,11 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
                     rrrs_size_t_3,),
@@ -868,15 +867,15 @@ def _prepare(p):
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
                     rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
-                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
+                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
+                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
@@ -889,11 +888,11 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size_t_3,),
                 ),
@@ -903,11 +902,11 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
                     rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
@@ -918,11 +917,11 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
                     rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
@@ -935,15 +934,15 @@ def _prepare(p):
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
                     rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
-                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
+                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
+                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_mu_2_t,
                     rrrs_mu_2_t_2, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
@@ -957,13 +956,13 @@ def _prepare(p):
                 h_star_in_platform_z, m_star,),
             (
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
-                    rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
-                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_x,
+                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass,
                     rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
@@ -978,11 +977,11 @@ def _prepare(p):
             (
                 (_rrrs,
         (inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
-                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
                     rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
                 ),
@@ -1641,11 +1640,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1909,8 +1908,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1918,7 +1917,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1926,11 +1925,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1978,15 +1977,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1362 mul, 1026 add, 12 div, 6 sqrt, 0 trig
+# dynamics: 1335 mul, 1008 add, 12 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2068,39 +2066,12 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_rrrs_xx, M_tt_xy, M_tt_xz, M_tt_rrrs_yy, M_tt_yz, M_tt_rrrs_zz, M_ta_xx, M_ta_rrrs_xy,
         M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_yy, M_ta_rrrs_yz, M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_zz,
@@ -2113,21 +2084,21 @@ def _run_dynamics(m, X, V):
             rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
             rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
             rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t,
-            rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
-            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Sigma_2_in_axes2_xx,
+            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t,
+            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
             rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
             rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -2137,56 +2108,52 @@ def _run_dynamics(m, X, V):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
         rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
@@ -2201,10 +2168,10 @@ def _run_dynamics(m, X, V):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -2263,8 +2230,8 @@ def _run_dynamics(m, X, V):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
         rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
         rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
@@ -2296,12 +2263,13 @@ def _run_dynamics(m, X, V):
         rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -2340,8 +2308,8 @@ def _run_dynamics(m, X, V):
         # (rrrs-qdd_2_o) remainder of: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder of: angular acceleration of link 1
-        rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
-        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
+        rrrs_alpha_1_o_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = rrrs_h_2_t_20*rrrs_qdd_1_o
         # (rrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
         rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
@@ -2350,12 +2318,9 @@ def _run_dynamics(m, X, V):
         rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o
         rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - rrrs_zeta_2_in_axes2_y
         rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x
-        # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z
         # (rrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrs_alpha_3_o_in_axes3_x = (
-        rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+        rrrs_zeta_3_in_axes3_x + rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 -
             rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t
         )
         rrrs_alpha_3_o_in_axes3_y = (
@@ -2372,19 +2337,23 @@ def _run_dynamics(m, X, V):
         rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x
         rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y
         rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x
-        # (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_o_in_axes3_x = (
-        rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrs_g_in_axes3_x = (
+        axis_x_rrrs_axes3_x*gravity_x + axis_x_rrrs_axes3_y*gravity_y +
             axis_x_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_in_axes3_y = (
-        rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_y = (
+        axis_y_rrrs_axes3_x*gravity_x + axis_y_rrrs_axes3_y*gravity_y +
             axis_y_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_in_axes3_z = (
-        rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_z = (
+        axis_z_rrrs_axes3_x*gravity_x + axis_z_rrrs_axes3_y*gravity_y +
             axis_z_rrrs_axes3_z*gravity_z
         )
+        # (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_g_in_axes3_x
+        rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_g_in_axes3_y
+        rrrs_acc_3_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_g_in_axes3_z
         # (rrrs-D_1_3) inertia of joint 3 along joint 1
         rrrs_D_1_3 = (
         rrrs_J_3_in_spec3_xz*rrrs_e_1_in_axes3_x + rrrs_J_3_in_spec3_yz*rrrs_e_1_in_axes3_y
@@ -2398,20 +2367,23 @@ def _run_dynamics(m, X, V):
         rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
         )
         rrrs_Jc_2_in_axes1_zz = (
-        rrrs_c_2*(rrrs_c_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
-            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_s_2) -
-            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_in_spec2_yy +
-            rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
-            rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
+        rrrs_h_2_t_19*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
+            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_20) -
+            rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_19 -
+            rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yy + rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 -
+            rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
         )
+        # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
+        rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
+        rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_t_4 = rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_5 = rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_6 = rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2)
         # (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
-        rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
-        rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
         rrrs_mu_3_o_in_axes3_x = (
-        rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+        rrrs_mu_3_t_4 + rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
             rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
-            rrrs_J_3_in_spec3_yz*(rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
             rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
             rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
             rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
@@ -2420,54 +2392,62 @@ def _run_dynamics(m, X, V):
         rrrs_mu_3_o_in_axes3_y = (
         rrrs_B_3_o_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
             rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
-            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z - rrrs_mu_3_t_5 -
             rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_o_t
-            - rrrs_mu_3_o_t_3) - rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x
+            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx -
+            rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x
         )
         rrrs_mu_3_o_in_axes3_z = (
-        rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
-            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_o_t
-            - rrrs_mu_3_o_t_2) + rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
+        rrrs_mu_3_t_6 + rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx +
+            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y
         )
         # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*rrrs_w_1_in_axes3_z
         rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x
         rrrs_d_Gamma_3_in_axes3_x = (
         rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
         )
-        # (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_o_t_2 = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_mu_2_o_t_3 = rrrs_qd_2_t*rrrs_qd_2_t
+        # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
+        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
-        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
+        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
+        rrrs_mu_2_t_9 = (
+        rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z
+        )
+        rrrs_mu_2_t_10 = (
+        rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z - rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x
+        )
+        rrrs_mu_2_t_11 = (
+        rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y
+        )
+        # (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_o_in_axes2_x = (
-        rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+        rrrs_mu_2_t_6 + rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
             rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
-            rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x +
-            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x - rrrs_mu_2_t_9 -
+            rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy
         )
         rrrs_mu_2_o_in_axes2_y = (
-        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy + rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x -
+        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy - rrrs_mu_2_t_10 - rrrs_mu_2_t_7 -
             rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
-            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
-            - rrrs_mu_2_o_t_3) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t -
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
+            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t
         )
         rrrs_mu_2_o_in_axes2_z = (
-        rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t -
-            rrrs_mu_2_o_t_2) + rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x +
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
+        rrrs_mu_2_t_8 + rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x - rrrs_mu_2_t_11 -
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
-            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
+            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t
         )
         # (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_o_in_axes2_x = (
@@ -2483,30 +2463,40 @@ def _run_dynamics(m, X, V):
         rrrs_d_Gamma_2_in_axes3_x = (
         rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
         )
-        # (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_o_in_axes1_z = (
-        rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
-            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
+        # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_t = (
+        rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z
         )
+        # (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_mu_1_t
         # (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
-        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_h_2_t_19 -
+            rrrs_N_2_o_in_axes2_y*rrrs_h_2_t_20
         )
         # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrs_d_Gamma_1_t = rrrs_D_1_3*rrrs_w_3_in_axes3_y
+        rrrs_d_Gamma_1_in_axes3_x = (
+        rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_z +
+            rrrs_w_2_in_axes3_x*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xz +
+            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
+            rrrs_d_Gamma_1_t*rrrs_r_2_in_axes3_x - rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yz +
+            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
+        )
+        rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t - rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_z
         rrrs_d_Gamma_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y + rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx +
             rrrs_Jc_2_in_axes1_zz) - rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x
         )
         # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rrrs_d_G_in_axes3_xz = (
-        rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
-            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_xz +
-            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
-            rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*rrrs_c_3 -
-            rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
-        )
+        rrrs_d_G_in_axes3_zx = rrrs_d_Gamma_1_in_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_d_G_in_axes3_zy = rrrs_d_Gamma_1_in_axes3_y*rrrs_w_1_in_axes3_z
         # (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
+        # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_t = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3)
+        rrrs_c_t_2 = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3)
+        rrrs_c_t_3 = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2)
         # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrs_d_c_in_axes3_xx = (
         rrrs_h_3_in_spec3_y*(rrrs_w_2_in_axes3_x + rrrs_w_3_in_axes3_x) -
@@ -2517,28 +2507,18 @@ def _run_dynamics(m, X, V):
         rrrs_d_phi_3_t - rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
             rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x
         )
-        rrrs_d_c_in_axes3_xz = (
-        -rrrs_d_G_in_axes3_xz - rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z
-        )
-        rrrs_d_c_in_axes3_yz = (
-        rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
-            rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y
-        )
         # (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_o_in_axes3_x = (
-        rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
-            rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
-            - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
+        rrrs_c_t + rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x -
+            rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
             rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_o_in_axes3_y = (
-        rrrs_h_3_in_spec3_y*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
-            rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
+        rrrs_c_t_2 - rrrs_G_o_in_axes3_y - rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_o_in_axes3_z = (
-        rrrs_h_3_in_spec3_z*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_2) -
-            rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
+        rrrs_c_t_3 - rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y - rrrs_N_1_o_in_axes1_z*rrrs_w_1_in_axes3_z
         )
         # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
@@ -2546,43 +2526,43 @@ def _run_dynamics(m, X, V):
         rrrs_Q_t_2 = 0.5*rrrs_Q_t
         rrrs_Q_t_3 = (
         rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
-            rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
-            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x
+            rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y*rrrs_w_1_in_axes3_z -
+            rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x*rrrs_w_1_in_axes3_z
         )
         rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
         rrrs_Q_t_5 = (
-        axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_x*rrrs_d_c_in_axes3_yz -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_2
+        axis_y_rrrs_axes3_x*rrrs_Q_t_2 + axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
+            axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy
         )
         rrrs_Q_t_6 = (
-        axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_y*rrrs_d_c_in_axes3_yz -
-            axis_y_rrrs_axes3_y*rrrs_Q_t_2
+        axis_y_rrrs_axes3_y*rrrs_Q_t_2 + axis_z_rrrs_axes3_y*rrrs_d_G_in_axes3_zy -
+            axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy
         )
         rrrs_Q_t_7 = (
-        axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_z*rrrs_d_c_in_axes3_yz -
-            axis_y_rrrs_axes3_z*rrrs_Q_t_2
+        axis_y_rrrs_axes3_z*rrrs_Q_t_2 + axis_z_rrrs_axes3_z*rrrs_d_G_in_axes3_zy -
+            axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy
         )
-        rrrs_Q_t_8 = axis_z_rrrs_axes3_x*rrrs_Q_t_4 - axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xz
-        rrrs_Q_t_9 = axis_z_rrrs_axes3_y*rrrs_Q_t_4 - axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xz
-        rrrs_Q_t_10 = axis_z_rrrs_axes3_z*rrrs_Q_t_4 - axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xz
-        rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_x*rrrs_Q_t_8
-        rrrs_Q_xx = -2.0*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_8 = axis_x_rrrs_axes3_x*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_x*rrrs_Q_t_4
+        rrrs_Q_t_9 = axis_x_rrrs_axes3_y*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_y*rrrs_Q_t_4
+        rrrs_Q_t_10 = axis_x_rrrs_axes3_z*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_z*rrrs_Q_t_4
+        rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 + axis_z_rrrs_axes3_x*rrrs_Q_t_8
+        rrrs_Q_xx = 2.0*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx
         rrrs_Q_xy = (
-        axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8 -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_6 - axis_y_rrrs_axes3_y*rrrs_Q_t_5
+        axis_y_rrrs_axes3_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
+            axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8
         )
         rrrs_Q_xz = (
-        axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8 -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_7 - axis_y_rrrs_axes3_z*rrrs_Q_t_5
+        axis_y_rrrs_axes3_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
+            axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8
         )
-        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_y*rrrs_Q_t_9
-        rrrs_Q_yy = -2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 + axis_z_rrrs_axes3_y*rrrs_Q_t_9
+        rrrs_Q_yy = 2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
         rrrs_Q_yz = (
-        axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9 -
-            axis_y_rrrs_axes3_y*rrrs_Q_t_7 - axis_y_rrrs_axes3_z*rrrs_Q_t_6
+        axis_y_rrrs_axes3_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
+            axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9
         )
-        rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_z*rrrs_Q_t_10
-        rrrs_Q_zz = -2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 + axis_z_rrrs_axes3_z*rrrs_Q_t_10
+        rrrs_Q_zz = 2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
         # (rrrs-U) velocity and gravity terms of the leg force
         rrrs_U_x = (
         -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y -
@@ -2597,21 +2577,21 @@ def _run_dynamics(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z
         )
         # (M_ta) coupling block of M
-        rrrs_M_ta_t = -rrrs_Q_xy*rrrs_q_z
+        rrrs_M_ta_t = rrrs_Q_xy*rrrs_q_z
         rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y
-        rrrs_M_ta_t_3 = rrrs_M_ta_t + rrrs_M_ta_t_2
+        rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t
         rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
         rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y
         rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z
         rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x
-        rrrs_M_ta_t_8 = rrrs_M_ta_t + rrrs_M_ta_t_7
+        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
         rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
         rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z
         rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x
         rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
         # (M_aa) rotational block of M
         rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
-        rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y + rrrs_M_ta_t_8*rrrs_q_z
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y - rrrs_M_ta_t_8*rrrs_q_z
         rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z
         rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x
         rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x
@@ -2629,8 +2609,8 @@ def _run_dynamics(m, X, V):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -2646,7 +2626,7 @@ def _run_dynamics(m, X, V):
         M_ta_rrrs_xy += rrrs_M_ta_t_4
         M_ta_rrrs_xz += rrrs_M_ta_t_5
         M_ta_rrrs_yx += rrrs_M_ta_t_6
-        M_ta_yy += -rrrs_M_ta_t_8
+        M_ta_yy += rrrs_M_ta_t_8
         M_ta_rrrs_yz += rrrs_M_ta_t_9
         M_ta_rrrs_zx += rrrs_M_ta_t_10
         M_ta_rrrs_zy += rrrs_M_ta_t_11
@@ -2835,17 +2815,17 @@ def _run_M(m, X):
             rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
             rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
             rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t,
-            rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y,
+            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t,
+            rrrs_h_2_t, rrrs_h_2_t_2, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y,
             rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
             rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
             rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -2855,56 +2835,52 @@ def _run_M(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-r_2) from joint 2 to the connection point, along the links
         rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
@@ -2912,23 +2888,46 @@ def _run_M(m, X):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
         # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
         rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
         # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
+            rrrs_base_frame_xz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
+            rrrs_base_frame_yz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
+            rrrs_base_frame_zz*rrrs_w_2_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-w_3) reciprocal vector 3
         rrrs_w_3_in_axes3_x = -rrrs_r_2_in_axes3_x*rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y
-        # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z
         # (rrrs-D_1_3) inertia of joint 3 along joint 1
         rrrs_D_1_3 = (
         rrrs_J_3_in_spec3_xz*rrrs_e_1_in_axes3_x + rrrs_J_3_in_spec3_yz*rrrs_e_1_in_axes3_y
@@ -2942,14 +2941,13 @@ def _run_M(m, X):
         rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
         )
         rrrs_Jc_2_in_axes1_zz = (
-        rrrs_c_2*(rrrs_c_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
-            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_s_2) -
-            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_in_spec2_yy +
-            rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
-            rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
+        rrrs_h_2_t_19*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
+            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_20) -
+            rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_19 -
+            rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yy + rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 -
+            rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
         )
         # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*rrrs_w_1_in_axes3_z
         rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x
         rrrs_d_Gamma_3_in_axes3_x = (
         rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
@@ -2959,18 +2957,22 @@ def _run_M(m, X):
         rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
         )
         # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrs_d_Gamma_1_t = rrrs_D_1_3*rrrs_w_3_in_axes3_y
+        rrrs_d_Gamma_1_in_axes3_x = (
+        rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_z +
+            rrrs_w_2_in_axes3_x*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xz +
+            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
+            rrrs_d_Gamma_1_t*rrrs_r_2_in_axes3_x - rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yz +
+            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
+        )
+        rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t - rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_z
         rrrs_d_Gamma_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y + rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx +
             rrrs_Jc_2_in_axes1_zz) - rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x
         )
         # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rrrs_d_G_in_axes3_xz = (
-        rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
-            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_xz +
-            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
-            rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*rrrs_c_3 -
-            rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
-        )
+        rrrs_d_G_in_axes3_zx = rrrs_d_Gamma_1_in_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_d_G_in_axes3_zy = rrrs_d_Gamma_1_in_axes3_y*rrrs_w_1_in_axes3_z
         # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrs_d_c_in_axes3_xx = (
         rrrs_h_3_in_spec3_y*(rrrs_w_2_in_axes3_x + rrrs_w_3_in_axes3_x) -
@@ -2981,104 +2983,71 @@ def _run_M(m, X):
         rrrs_d_phi_3_t - rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
             rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x
         )
-        rrrs_d_c_in_axes3_xz = (
-        -rrrs_d_G_in_axes3_xz - rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z
-        )
-        rrrs_d_c_in_axes3_yz = (
-        rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
-            rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y
-        )
         # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
-        axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
-        axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_Q_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_Q_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
-        axis_y_rrrs_axes3_x = (
-        rrrs_Q_t*rrrs_base_frame_xy + rrrs_Q_t_2*rrrs_base_frame_xz +
-            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
+        rrrs_Q_t = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy
+        rrrs_Q_t_2 = 0.5*rrrs_Q_t
+        rrrs_Q_t_3 = (
+        rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
+            rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y*rrrs_w_1_in_axes3_z -
+            rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x*rrrs_w_1_in_axes3_z
         )
-        axis_y_rrrs_axes3_y = (
-        rrrs_Q_t*rrrs_base_frame_yy + rrrs_Q_t_2*rrrs_base_frame_yz +
-            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
-        )
-        axis_y_rrrs_axes3_z = (
-        rrrs_Q_t*rrrs_base_frame_zy + rrrs_Q_t_2*rrrs_base_frame_zz +
-            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
-        )
-        rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy
         rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
         rrrs_Q_t_5 = (
-        rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
-            rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
-            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x
+        axis_y_rrrs_axes3_x*rrrs_Q_t_2 + axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
+            axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy
         )
-        rrrs_Q_t_6 = 0.5*rrrs_Q_t_5
+        rrrs_Q_t_6 = (
+        axis_y_rrrs_axes3_y*rrrs_Q_t_2 + axis_z_rrrs_axes3_y*rrrs_d_G_in_axes3_zy -
+            axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy
+        )
         rrrs_Q_t_7 = (
-        axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_x*rrrs_d_c_in_axes3_yz -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_4
+        axis_y_rrrs_axes3_z*rrrs_Q_t_2 + axis_z_rrrs_axes3_z*rrrs_d_G_in_axes3_zy -
+            axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy
         )
-        rrrs_Q_t_8 = (
-        axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_y*rrrs_d_c_in_axes3_yz -
-            axis_y_rrrs_axes3_y*rrrs_Q_t_4
-        )
-        rrrs_Q_t_9 = (
-        axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_z*rrrs_d_c_in_axes3_yz -
-            axis_y_rrrs_axes3_z*rrrs_Q_t_4
-        )
-        rrrs_Q_t_10 = axis_z_rrrs_axes3_x*rrrs_Q_t_6 - axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xz
-        rrrs_Q_t_11 = axis_z_rrrs_axes3_y*rrrs_Q_t_6 - axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xz
-        rrrs_Q_t_12 = axis_z_rrrs_axes3_z*rrrs_Q_t_6 - axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xz
-        rrrs_Q_t_13 = axis_y_rrrs_axes3_x*rrrs_Q_t_7 - axis_z_rrrs_axes3_x*rrrs_Q_t_10
-        rrrs_Q_xx = -2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_8 = axis_x_rrrs_axes3_x*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_x*rrrs_Q_t_4
+        rrrs_Q_t_9 = axis_x_rrrs_axes3_y*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_y*rrrs_Q_t_4
+        rrrs_Q_t_10 = axis_x_rrrs_axes3_z*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_z*rrrs_Q_t_4
+        rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 + axis_z_rrrs_axes3_x*rrrs_Q_t_8
+        rrrs_Q_xx = 2.0*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx
         rrrs_Q_xy = (
-        axis_z_rrrs_axes3_x*rrrs_Q_t_11 + axis_z_rrrs_axes3_y*rrrs_Q_t_10 -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_8 - axis_y_rrrs_axes3_y*rrrs_Q_t_7
+        axis_y_rrrs_axes3_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
+            axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8
         )
         rrrs_Q_xz = (
-        axis_z_rrrs_axes3_x*rrrs_Q_t_12 + axis_z_rrrs_axes3_z*rrrs_Q_t_10 -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_9 - axis_y_rrrs_axes3_z*rrrs_Q_t_7
+        axis_y_rrrs_axes3_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
+            axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8
         )
-        rrrs_Q_t_14 = axis_y_rrrs_axes3_y*rrrs_Q_t_8 - axis_z_rrrs_axes3_y*rrrs_Q_t_11
-        rrrs_Q_yy = -2.0*rrrs_Q_t_14 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 + axis_z_rrrs_axes3_y*rrrs_Q_t_9
+        rrrs_Q_yy = 2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
         rrrs_Q_yz = (
-        axis_z_rrrs_axes3_y*rrrs_Q_t_12 + axis_z_rrrs_axes3_z*rrrs_Q_t_11 -
-            axis_y_rrrs_axes3_y*rrrs_Q_t_9 - axis_y_rrrs_axes3_z*rrrs_Q_t_8
+        axis_y_rrrs_axes3_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
+            axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9
         )
-        rrrs_Q_t_15 = axis_y_rrrs_axes3_z*rrrs_Q_t_9 - axis_z_rrrs_axes3_z*rrrs_Q_t_12
-        rrrs_Q_zz = -2.0*rrrs_Q_t_15 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 + axis_z_rrrs_axes3_z*rrrs_Q_t_10
+        rrrs_Q_zz = 2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        rrrs_M_ta_t = -rrrs_Q_xy*rrrs_q_z
+        rrrs_M_ta_t = rrrs_Q_xy*rrrs_q_z
         rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y
-        rrrs_M_ta_t_3 = rrrs_M_ta_t + rrrs_M_ta_t_2
+        rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t
         rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
         rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y
         rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z
         rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x
-        rrrs_M_ta_t_8 = rrrs_M_ta_t + rrrs_M_ta_t_7
+        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
         rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
         rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z
         rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x
         rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
         # (M_aa) rotational block of M
         rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
-        rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y + rrrs_M_ta_t_8*rrrs_q_z
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y - rrrs_M_ta_t_8*rrrs_q_z
         rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z
         rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x
         rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x
         rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -3094,7 +3063,7 @@ def _run_M(m, X):
         M_ta_rrrs_xy += rrrs_M_ta_t_4
         M_ta_rrrs_xz += rrrs_M_ta_t_5
         M_ta_rrrs_yx += rrrs_M_ta_t_6
-        M_ta_yy += -rrrs_M_ta_t_8
+        M_ta_yy += rrrs_M_ta_t_8
         M_ta_rrrs_yz += rrrs_M_ta_t_9
         M_ta_rrrs_zx += rrrs_M_ta_t_10
         M_ta_rrrs_zy += rrrs_M_ta_t_11
@@ -3166,14 +3135,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 924 mul, 675 add, 12 div, 6 sqrt, 0 trig
+# Z: 933 mul, 681 add, 12 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3229,6 +3198,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3237,58 +3222,31 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
             rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
-            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
+            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
             rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
             rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -3298,56 +3256,52 @@ def _run_Z(m, X, V):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
         rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
@@ -3362,40 +3316,33 @@ def _run_Z(m, X, V):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
         # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
-        # (rrrs-qd_1) rate of joint 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_qd_1 = (
-        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
-        )
-        # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_qd_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t +
-            rrrs_base_frame_xz*rrrs_qd_2_t_2
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
+            rrrs_base_frame_xz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t +
-            rrrs_base_frame_yz*rrrs_qd_2_t_2
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
+            rrrs_base_frame_yz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t +
-            rrrs_base_frame_zz*rrrs_qd_2_t_2
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
+            rrrs_base_frame_zz*rrrs_w_2_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -3406,25 +3353,32 @@ def _run_Z(m, X, V):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
-        rrrs_qd_2_t_3 = (
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        # (rrrs-qd_1) rate of joint 1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
+        rrrs_qd_2_t = (
         -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
             + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t_3*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
         rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
         rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t_3
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
         rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t_3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
@@ -3446,23 +3400,24 @@ def _run_Z(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_u_1_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t_3
+        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
         rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
         rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
+        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
         rrrs_bias_t_6 = (
         rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
@@ -3470,12 +3425,12 @@ def _run_Z(m, X, V):
         rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
         rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t_3 - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
             rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
         rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t_3 - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
         rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
@@ -3493,8 +3448,8 @@ def _run_Z(m, X, V):
         # (rrrs-qdd_2_o) remainder of: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder of: angular acceleration of link 1
-        rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
-        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
+        rrrs_alpha_1_o_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = rrrs_h_2_t_20*rrrs_qdd_1_o
         # (rrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
         rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
@@ -3505,7 +3460,7 @@ def _run_Z(m, X, V):
         rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x
         # (rrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrs_alpha_3_o_in_axes3_x = (
-        rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+        rrrs_zeta_3_in_axes3_x + rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 -
             rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t
         )
         rrrs_alpha_3_o_in_axes3_y = (
@@ -3522,27 +3477,34 @@ def _run_Z(m, X, V):
         rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x
         rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y
         rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x
-        # (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_o_in_axes3_x = (
-        rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrs_g_in_axes3_x = (
+        axis_x_rrrs_axes3_x*gravity_x + axis_x_rrrs_axes3_y*gravity_y +
             axis_x_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_in_axes3_y = (
-        rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_y = (
+        axis_y_rrrs_axes3_x*gravity_x + axis_y_rrrs_axes3_y*gravity_y +
             axis_y_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_in_axes3_z = (
-        rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_z = (
+        axis_z_rrrs_axes3_x*gravity_x + axis_z_rrrs_axes3_y*gravity_y +
             axis_z_rrrs_axes3_z*gravity_z
         )
+        # (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_g_in_axes3_x
+        rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_g_in_axes3_y
+        rrrs_acc_3_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_g_in_axes3_z
+        # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
+        rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
+        rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_t_4 = rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_5 = rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_6 = rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2)
         # (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
-        rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
-        rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
         rrrs_mu_3_o_in_axes3_x = (
-        rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+        rrrs_mu_3_t_4 + rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
             rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
-            rrrs_J_3_in_spec3_yz*(rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
             rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
             rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
             rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
@@ -3551,48 +3513,57 @@ def _run_Z(m, X, V):
         rrrs_mu_3_o_in_axes3_y = (
         rrrs_B_3_o_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
             rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
-            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z - rrrs_mu_3_t_5 -
             rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_o_t
-            - rrrs_mu_3_o_t_3) - rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x
+            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx -
+            rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x
         )
         rrrs_mu_3_o_in_axes3_z = (
-        rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
-            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_o_t
-            - rrrs_mu_3_o_t_2) + rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
+        rrrs_mu_3_t_6 + rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx +
+            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y
         )
-        # (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_o_t_2 = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_mu_2_o_t_3 = rrrs_qd_2_t_3*rrrs_qd_2_t_3
+        # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
+        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
-        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
+        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
+        rrrs_mu_2_t_9 = (
+        rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z
+        )
+        rrrs_mu_2_t_10 = (
+        rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z - rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x
+        )
+        rrrs_mu_2_t_11 = (
+        rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y
+        )
+        # (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_o_in_axes2_x = (
-        rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+        rrrs_mu_2_t_6 + rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
             rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
-            rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x +
-            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x - rrrs_mu_2_t_9 -
+            rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy
         )
         rrrs_mu_2_o_in_axes2_y = (
-        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy + rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x -
+        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy - rrrs_mu_2_t_10 - rrrs_mu_2_t_7 -
             rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
-            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
-            - rrrs_mu_2_o_t_3) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t -
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
+            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t
         )
         rrrs_mu_2_o_in_axes2_z = (
-        rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t -
-            rrrs_mu_2_o_t_2) + rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x +
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
+        rrrs_mu_2_t_8 + rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x - rrrs_mu_2_t_11 -
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
-            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
+            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t
         )
         # (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_o_in_axes2_x = (
@@ -3604,32 +3575,35 @@ def _run_Z(m, X, V):
             rrrs_mu_3_o_in_axes3_x*rrrs_s_3_t
         )
         rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z
-        # (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_o_in_axes1_z = (
-        rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
-            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
+        # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_t = (
+        rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z
         )
+        # (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_mu_1_t
         # (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
-        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_h_2_t_19 -
+            rrrs_N_2_o_in_axes2_y*rrrs_h_2_t_20
         )
         # (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
+        # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_t = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3)
+        rrrs_c_t_2 = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3)
+        rrrs_c_t_3 = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2)
         # (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_o_in_axes3_x = (
-        rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
-            rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
-            - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
+        rrrs_c_t + rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x -
+            rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
             rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_o_in_axes3_y = (
-        rrrs_h_3_in_spec3_y*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
-            rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
+        rrrs_c_t_2 - rrrs_G_o_in_axes3_y - rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_o_in_axes3_z = (
-        rrrs_h_3_in_spec3_z*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_2) -
-            rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
+        rrrs_c_t_3 - rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y - rrrs_N_1_o_in_axes1_z*rrrs_w_1_in_axes3_z
         )
         # (rrrs-U) velocity and gravity terms of the leg force
@@ -3650,8 +3624,8 @@ def _run_Z(m, X, V):
         rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x
         rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -3725,15 +3699,15 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
+            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -3743,67 +3717,62 @@ def _run_H(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_y = (
-        rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t
-        )
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -3831,19 +3800,19 @@ def _run_H(m, X):
         rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
             rrrs_base_frame_zz*rrrs_w_2_t_2
         )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
-        rrrs_w_2_x = (
-        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y)
-        )
-        rrrs_w_2_y = (
-        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z)
-        )
-        rrrs_w_2_z = (
-        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x)
-        )
+        rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
+        rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
+        rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x
         # (rrrs-H_a_1) moment of the column's unit force about the platform origin
         rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y
         rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z
@@ -3853,8 +3822,8 @@ def _run_H(m, X):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -3877,7 +3846,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1020 mul, 747 add, 12 div, 6 sqrt, 0 trig
+# required: 1011 mul, 738 add, 12 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3951,9 +3920,22 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -3966,21 +3948,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
-        f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
-        f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
-        f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*m_star - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -4026,20 +3996,20 @@ def _run_required(m, X, V, A):
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
             rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
-            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
+            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
             rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
             rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -4049,56 +4019,52 @@ def _run_required(m, X, V, A):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
         rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
@@ -4113,10 +4079,10 @@ def _run_required(m, X, V, A):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -4173,8 +4139,8 @@ def _run_required(m, X, V, A):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
         rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
         rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
@@ -4186,14 +4152,10 @@ def _run_required(m, X, V, A):
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
         rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
-        # (rrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y
-        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z
-        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x
         # (rrrs-S_ddot) acceleration of the connection point
-        rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
-        rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
-        rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_S_ddot_x = t_ddot_x + B_p_xy*rrrs_q_y + B_p_xz*rrrs_q_z - W_p_t_4*rrrs_q_x
+        rrrs_S_ddot_y = t_ddot_y + B_p_yx*rrrs_q_x + B_p_yz*rrrs_q_z - W_p_t_5*rrrs_q_y
+        rrrs_S_ddot_z = t_ddot_z + B_p_zx*rrrs_q_x + B_p_zy*rrrs_q_y - W_p_t_6*rrrs_q_z
         rrrs_S_ddot_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
             axis_x_rrrs_axes3_z*rrrs_S_ddot_z
@@ -4210,12 +4172,13 @@ def _run_required(m, X, V, A):
         rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -4253,9 +4216,11 @@ def _run_required(m, X, V, A):
         rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-qdd_2) acceleration of joint 2
         rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x
+        # (rrrs-qdd_3) acceleration of joint 3
+        rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_in_axes2_x = rrrs_c_2*rrrs_qdd_1
-        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
+        rrrs_alpha_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1
+        rrrs_alpha_1_t = rrrs_h_2_t_20*rrrs_qdd_1
         # (rrrs-alpha_2) angular acceleration of link 2
         rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_in_axes2_x
         rrrs_alpha_2_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_t
@@ -4266,15 +4231,13 @@ def _run_required(m, X, V, A):
         rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x
         # (rrrs-alpha_3) angular acceleration of link 3
         rrrs_alpha_3_in_axes3_x = (
-        rrrs_alpha_2_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+        rrrs_zeta_3_in_axes3_x + rrrs_alpha_2_in_axes2_x*rrrs_c_3 -
             rrrs_alpha_2_in_axes2_y*rrrs_s_3_t
         )
         rrrs_alpha_3_in_axes3_y = (
         rrrs_alpha_2_in_axes2_x*rrrs_s_3_t + rrrs_alpha_2_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t
         )
-        rrrs_alpha_3_in_axes3_z = (
-        rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
-        )
+        rrrs_alpha_3_in_axes3_z = rrrs_qdd_2 + rrrs_qdd_3
         # (rrrs-B_3) acceleration tensor of link 3
         rrrs_B_3_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z
         rrrs_B_3_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y
@@ -4283,39 +4246,45 @@ def _run_required(m, X, V, A):
         rrrs_B_3_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y
         rrrs_B_3_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x
         # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_in_axes3_x = (
-        rrrs_S_ddot_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_x = (
+        axis_x_rrrs_axes3_x*gravity_x + axis_x_rrrs_axes3_y*gravity_y +
             axis_x_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_in_axes3_y = (
-        rrrs_S_ddot_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_y = (
+        axis_y_rrrs_axes3_x*gravity_x + axis_y_rrrs_axes3_y*gravity_y +
             axis_y_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_in_axes3_z = (
-        rrrs_S_ddot_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_z = (
+        axis_z_rrrs_axes3_x*gravity_x + axis_z_rrrs_axes3_y*gravity_y +
             axis_z_rrrs_axes3_z*gravity_z
         )
+        rrrs_acc_3_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_g_in_axes3_x
+        rrrs_acc_3_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_g_in_axes3_y
+        rrrs_acc_3_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_g_in_axes3_z
         # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
         rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
         rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_t_4 = rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_5 = rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_6 = rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2)
         rrrs_mu_3_in_axes3_x = (
-        rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz + rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy
-            + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3) +
+        rrrs_mu_3_t_4 + rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+            rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
             rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
             rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
             rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z
         )
         rrrs_mu_3_in_axes3_y = (
         rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz + rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy
-            + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z -
+            + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z - rrrs_mu_3_t_5 -
             rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
-            rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x
+            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx -
+            rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x
         )
         rrrs_mu_3_in_axes3_z = (
-        rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz + rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx
-            + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2) +
+        rrrs_mu_3_t_6 + rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx +
             rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
             rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y
@@ -4326,27 +4295,36 @@ def _run_required(m, X, V, A):
         rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
-        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
+        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
+        rrrs_mu_2_t_9 = (
+        rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z
+        )
+        rrrs_mu_2_t_10 = (
+        rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z - rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x
+        )
+        rrrs_mu_2_t_11 = (
+        rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y
+        )
         rrrs_mu_2_in_axes2_x = (
-        rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz + rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy
-            + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5) +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_x +
-            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y
+        rrrs_mu_2_t_6 + rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+            rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_x - rrrs_mu_2_t_9 -
+            rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy
         )
         rrrs_mu_2_in_axes2_y = (
-        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy + rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x -
+        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy - rrrs_mu_2_t_10 - rrrs_mu_2_t_7 -
             rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
-            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_5) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t -
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
+            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t
         )
         rrrs_mu_2_in_axes2_z = (
-        rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_4) + rrrs_J_2_in_spec2_xz*rrrs_alpha_1_in_axes2_x +
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y - rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy
-            - rrrs_J_2_in_spec2_yz*rrrs_alpha_1_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
+        rrrs_mu_2_t_8 + rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_in_axes2_x - rrrs_mu_2_t_11 -
+            rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy - rrrs_J_2_in_spec2_yz*rrrs_alpha_1_t
         )
         # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_in_axes2_x = (
@@ -4357,30 +4335,33 @@ def _run_required(m, X, V, A):
         )
         rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z
         # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_in_axes1_z = (
-        rrrs_J_1_in_spec1_xx*rrrs_qdd_1 + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
-            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
+        rrrs_mu_1_t = (
+        rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z
         )
+        rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_mu_1_t
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_in_axes1_z = (
-        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_c_2 - rrrs_N_2_in_axes2_y*rrrs_s_2
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_h_2_t_19 -
+            rrrs_N_2_in_axes2_y*rrrs_h_2_t_20
         )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_t = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3)
+        rrrs_c_t_2 = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3)
+        rrrs_c_t_3 = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2)
         rrrs_c_in_axes3_x = (
-        rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
-            rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_in_axes2_z) -
-            rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y - rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z
+        rrrs_c_t + rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x -
+            rrrs_N_2_in_axes2_z) - rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_in_axes3_y = (
-        rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) - rrrs_G_in_axes3_y -
-            rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z
+        rrrs_c_t_2 - rrrs_G_in_axes3_y - rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_in_axes3_z = (
-        rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
-            rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
-            rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z
+        rrrs_c_t_3 - rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y - rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z
         )
         rrrs_c_x = (
         axis_x_rrrs_axes3_x*rrrs_c_in_axes3_x + axis_y_rrrs_axes3_x*rrrs_c_in_axes3_y +
@@ -4407,8 +4388,8 @@ def _run_required(m, X, V, A):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -4499,79 +4480,80 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
+            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size_t_3,
         ) = k
-        # (rrrs-S) from the base point to the connection point
-        rrrs_S_x = (
-        t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
-            - rrrs_base_point_x
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        rrrs_q_x = (
+        R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_S_y = (
-        t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
-            - rrrs_base_point_y
+        rrrs_q_y = (
+        R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_S_z = (
-        t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
-            - rrrs_base_point_z
+        rrrs_q_z = (
+        R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
+        )
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-q_1) displacement of joint 1
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_q_1 = (
-        atan2(inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1,
-            inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1)
-        )
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx -
-            rrrs_joint2_offset_x
-        )
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        rrrs_q_1 = atan2(rrrs_s_1, rrrs_c_1)
         # (rrrs-q_2) displacement of joint 2
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_q_2 = (
-        atan2(inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2),
-            inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2))
-        )
+        rrrs_q_2 = atan2(rrrs_h_2_t_20, rrrs_h_2_t_19)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3_t = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-q_3) displacement of joint 3
-        rrrs_q_3 = (
-        atan2(-inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2,
-            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x)
-        )
+        rrrs_q_3 = atan2(-rrrs_s_3_t, rrrs_c_3)
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0)
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0)
         )
         # (rrrs-q_1) displacement of joint 1
         out_q[_q_rrrs[0][leg]] = rrrs_q_1
@@ -4582,7 +4564,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 321 mul, 189 add, 12 div, 6 sqrt, 0 trig
+# joint_rates: 327 mul, 189 add, 12 div, 6 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -4638,15 +4620,15 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
+            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -4656,127 +4638,135 @@ def _run_joint_rates(m, X, V):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_x = t_dot_x + omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_y = t_dot_y + omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_z = t_dot_z + omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
         # (rrrs-r_2) from joint 2 to the connection point, along the links
         rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
-        # (rrrs-qd_1) rate of joint 1
+        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_qd_1 = (
-        (axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_z_rrrs_axes3_z*rrrs_S_dot_z)/rrrs_v_1_in_axes3_z
-        )
-        # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_qd_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t +
-            rrrs_base_frame_xz*rrrs_qd_2_t_2
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
+            rrrs_base_frame_xz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t +
-            rrrs_base_frame_yz*rrrs_qd_2_t_2
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
+            rrrs_base_frame_yz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t +
-            rrrs_base_frame_zz*rrrs_qd_2_t_2
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
+            rrrs_base_frame_zz*rrrs_w_2_t_2
         )
-        rrrs_qd_2_t_3 = (
-        (rrrs_S_dot_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y) +
-            rrrs_S_dot_y*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z) +
-            rrrs_S_dot_z*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x))/rrrs_r_2_in_axes3_y
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        # (rrrs-qd_1) rate of joint 1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
+        rrrs_qd_2_t = (
+        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
+            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t_3*(rrrs_c_3*rrrs_r_2_in_axes2_x +
-            rrrs_r_2_t*rrrs_s_3_t))
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
         # (rrrs-qd_1) rate of joint 1
         out_qd[_qd_rrrs[0][leg]] = rrrs_qd_1
         # (rrrs-qd_2) rate of joint 2
-        out_qd[_qd_rrrs[1][leg]] = -rrrs_qd_2_t_3
+        out_qd[_qd_rrrs[1][leg]] = -rrrs_qd_2_t
         # (rrrs-qd_3) rate of joint 3
         out_qd[_qd_rrrs[2][leg]] = rrrs_qd_3
     return ok, (out_qd,)
 
 
-# joint_accelerations: 534 mul, 321 add, 12 div, 6 sqrt, 0 trig
+# joint_accelerations: 531 mul, 321 add, 12 div, 6 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -4843,17 +4833,34 @@ def _run_joint_accelerations(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
+            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -4863,56 +4870,52 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
         rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
@@ -4927,40 +4930,33 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
         # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
-        # (rrrs-qd_1) rate of joint 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_qd_1 = (
-        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
-        )
-        # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_qd_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t +
-            rrrs_base_frame_xz*rrrs_qd_2_t_2
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
+            rrrs_base_frame_xz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t +
-            rrrs_base_frame_yz*rrrs_qd_2_t_2
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
+            rrrs_base_frame_yz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t +
-            rrrs_base_frame_zz*rrrs_qd_2_t_2
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
+            rrrs_base_frame_zz*rrrs_w_2_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -4971,48 +4967,65 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
-        rrrs_qd_2_t_3 = (
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        # (rrrs-qd_1) rate of joint 1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
+        rrrs_qd_2_t = (
         -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
             + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t_3*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
         rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
         rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t_3
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t_3
-        # (rrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y
-        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z
-        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x
+        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
         # (rrrs-S_ddot) acceleration of the connection point
-        rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
-        rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
-        rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_S_ddot_x = t_ddot_x + B_p_xy*rrrs_q_y + B_p_xz*rrrs_q_z - W_p_t_4*rrrs_q_x
+        rrrs_S_ddot_y = t_ddot_y + B_p_yx*rrrs_q_x + B_p_yz*rrrs_q_z - W_p_t_5*rrrs_q_y
+        rrrs_S_ddot_z = t_ddot_z + B_p_zx*rrrs_q_x + B_p_zy*rrrs_q_y - W_p_t_6*rrrs_q_z
+        rrrs_S_ddot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_ddot_z
+        )
+        rrrs_S_ddot_in_axes3_y = (
+        axis_y_rrrs_axes3_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_ddot_z
+        )
+        rrrs_S_ddot_in_axes3_z = (
+        axis_z_rrrs_axes3_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_ddot_z
+        )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t_3
+        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_omega_1_in_axes3_x*rrrs_qd_3
+        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
         rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
         rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
+        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
         rrrs_bias_t_6 = (
         rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
@@ -5020,12 +5033,12 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
         rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t_3 - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
             rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
         rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t_3 - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
         rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
@@ -5035,18 +5048,9 @@ def _run_joint_accelerations(m, X, V, A):
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
-        rrrs_rel_in_axes3_x = (
-        axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
-            axis_x_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_in_axes3_x
-        )
-        rrrs_rel_in_axes3_y = (
-        axis_y_rrrs_axes3_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_y*rrrs_S_ddot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_in_axes3_y
-        )
-        rrrs_rel_in_axes3_z = (
-        axis_z_rrrs_axes3_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_y*rrrs_S_ddot_y +
-            axis_z_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_in_axes3_z
-        )
+        rrrs_rel_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_bias_in_axes3_x
+        rrrs_rel_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_bias_in_axes3_y
+        rrrs_rel_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_bias_in_axes3_z
         # (rrrs-qdd_1) acceleration of joint 1
         rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-qdd_2) acceleration of joint 2
@@ -5054,8 +5058,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrrs-qdd_3) acceleration of joint 3
         rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -5068,7 +5072,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 882 mul, 630 add, 12 div, 6 sqrt, 0 trig
+# legs: 879 mul, 630 add, 12 div, 6 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -5137,24 +5141,41 @@ def _run_legs(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
             rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
-            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
+            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
             rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
             rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -5164,56 +5185,52 @@ def _run_legs(m, X, V, A):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
         rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
@@ -5228,10 +5245,10 @@ def _run_legs(m, X, V, A):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -5288,8 +5305,8 @@ def _run_legs(m, X, V, A):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
         rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
         rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
@@ -5301,14 +5318,10 @@ def _run_legs(m, X, V, A):
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
         rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
-        # (rrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y
-        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z
-        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x
         # (rrrs-S_ddot) acceleration of the connection point
-        rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
-        rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
-        rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_S_ddot_x = t_ddot_x + B_p_xy*rrrs_q_y + B_p_xz*rrrs_q_z - W_p_t_4*rrrs_q_x
+        rrrs_S_ddot_y = t_ddot_y + B_p_yx*rrrs_q_x + B_p_yz*rrrs_q_z - W_p_t_5*rrrs_q_y
+        rrrs_S_ddot_z = t_ddot_z + B_p_zx*rrrs_q_x + B_p_zy*rrrs_q_y - W_p_t_6*rrrs_q_z
         rrrs_S_ddot_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
             axis_x_rrrs_axes3_z*rrrs_S_ddot_z
@@ -5325,12 +5338,13 @@ def _run_legs(m, X, V, A):
         rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -5368,9 +5382,11 @@ def _run_legs(m, X, V, A):
         rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-qdd_2) acceleration of joint 2
         rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x
+        # (rrrs-qdd_3) acceleration of joint 3
+        rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_in_axes2_x = rrrs_c_2*rrrs_qdd_1
-        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
+        rrrs_alpha_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1
+        rrrs_alpha_1_t = rrrs_h_2_t_20*rrrs_qdd_1
         # (rrrs-alpha_2) angular acceleration of link 2
         rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_in_axes2_x
         rrrs_alpha_2_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_t
@@ -5381,15 +5397,13 @@ def _run_legs(m, X, V, A):
         rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x
         # (rrrs-alpha_3) angular acceleration of link 3
         rrrs_alpha_3_in_axes3_x = (
-        rrrs_alpha_2_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+        rrrs_zeta_3_in_axes3_x + rrrs_alpha_2_in_axes2_x*rrrs_c_3 -
             rrrs_alpha_2_in_axes2_y*rrrs_s_3_t
         )
         rrrs_alpha_3_in_axes3_y = (
         rrrs_alpha_2_in_axes2_x*rrrs_s_3_t + rrrs_alpha_2_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t
         )
-        rrrs_alpha_3_in_axes3_z = (
-        rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
-        )
+        rrrs_alpha_3_in_axes3_z = rrrs_qdd_2 + rrrs_qdd_3
         # (rrrs-B_3) acceleration tensor of link 3
         rrrs_B_3_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z
         rrrs_B_3_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y
@@ -5398,39 +5412,45 @@ def _run_legs(m, X, V, A):
         rrrs_B_3_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y
         rrrs_B_3_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x
         # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_in_axes3_x = (
-        rrrs_S_ddot_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_x = (
+        axis_x_rrrs_axes3_x*gravity_x + axis_x_rrrs_axes3_y*gravity_y +
             axis_x_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_in_axes3_y = (
-        rrrs_S_ddot_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_y = (
+        axis_y_rrrs_axes3_x*gravity_x + axis_y_rrrs_axes3_y*gravity_y +
             axis_y_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_in_axes3_z = (
-        rrrs_S_ddot_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_z = (
+        axis_z_rrrs_axes3_x*gravity_x + axis_z_rrrs_axes3_y*gravity_y +
             axis_z_rrrs_axes3_z*gravity_z
         )
+        rrrs_acc_3_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_g_in_axes3_x
+        rrrs_acc_3_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_g_in_axes3_y
+        rrrs_acc_3_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_g_in_axes3_z
         # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
         rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
         rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_t_4 = rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_5 = rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_6 = rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2)
         rrrs_mu_3_in_axes3_x = (
-        rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz + rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy
-            + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3) +
+        rrrs_mu_3_t_4 + rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+            rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
             rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
             rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
             rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z
         )
         rrrs_mu_3_in_axes3_y = (
         rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz + rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy
-            + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z -
+            + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z - rrrs_mu_3_t_5 -
             rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
-            rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x
+            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx -
+            rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x
         )
         rrrs_mu_3_in_axes3_z = (
-        rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz + rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx
-            + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2) +
+        rrrs_mu_3_t_6 + rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx +
             rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
             rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y
@@ -5441,27 +5461,36 @@ def _run_legs(m, X, V, A):
         rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
-        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
+        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
+        rrrs_mu_2_t_9 = (
+        rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z
+        )
+        rrrs_mu_2_t_10 = (
+        rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z - rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x
+        )
+        rrrs_mu_2_t_11 = (
+        rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y
+        )
         rrrs_mu_2_in_axes2_x = (
-        rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz + rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy
-            + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5) +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_x +
-            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y
+        rrrs_mu_2_t_6 + rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+            rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_x - rrrs_mu_2_t_9 -
+            rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy
         )
         rrrs_mu_2_in_axes2_y = (
-        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy + rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x -
+        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy - rrrs_mu_2_t_10 - rrrs_mu_2_t_7 -
             rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
-            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_5) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t -
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
+            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t
         )
         rrrs_mu_2_in_axes2_z = (
-        rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_4) + rrrs_J_2_in_spec2_xz*rrrs_alpha_1_in_axes2_x +
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y - rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy
-            - rrrs_J_2_in_spec2_yz*rrrs_alpha_1_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
+        rrrs_mu_2_t_8 + rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_in_axes2_x - rrrs_mu_2_t_11 -
+            rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy - rrrs_J_2_in_spec2_yz*rrrs_alpha_1_t
         )
         # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_in_axes2_x = (
@@ -5472,30 +5501,33 @@ def _run_legs(m, X, V, A):
         )
         rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z
         # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_in_axes1_z = (
-        rrrs_J_1_in_spec1_xx*rrrs_qdd_1 + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
-            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
+        rrrs_mu_1_t = (
+        rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z
         )
+        rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_mu_1_t
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_in_axes1_z = (
-        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_c_2 - rrrs_N_2_in_axes2_y*rrrs_s_2
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_h_2_t_19 -
+            rrrs_N_2_in_axes2_y*rrrs_h_2_t_20
         )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_t = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3)
+        rrrs_c_t_2 = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3)
+        rrrs_c_t_3 = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2)
         rrrs_c_in_axes3_x = (
-        rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
-            rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_in_axes2_z) -
-            rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y - rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z
+        rrrs_c_t + rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x -
+            rrrs_N_2_in_axes2_z) - rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_in_axes3_y = (
-        rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) - rrrs_G_in_axes3_y -
-            rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z
+        rrrs_c_t_2 - rrrs_G_in_axes3_y - rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_in_axes3_z = (
-        rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
-            rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
-            rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z
+        rrrs_c_t_3 - rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y - rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z
         )
         # (rrrs-c_true) leg force on the platform without actuation, the last link's mass included
         rrrs_c_true_in_axes3_x = rrrs_c_in_axes3_x - rrrs_acc_3_in_axes3_x*rrrs_link3_mass
@@ -5514,8 +5546,8 @@ def _run_legs(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z
         )
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -5579,114 +5611,114 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
+    gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
+        m_star*t_z)
     )
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
-            rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_3_in_spec3_x,
-            rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_link1_mass, rrrs_link2_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
+            rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+            rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
             rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
             rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2, rrrs_potential_t_3,
             rrrs_potential_t_4, rrrs_rho2_2_t, rrrs_size_t_3,
         ) = k
-        # (rrrs-S) from the base point to the connection point
-        rrrs_S_x = (
-        t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
-            - rrrs_base_point_x
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        rrrs_q_x = (
+        R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_S_y = (
-        t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
-            - rrrs_base_point_y
+        rrrs_q_y = (
+        R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_S_z = (
-        t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
-            - rrrs_base_point_z
+        rrrs_q_z = (
+        R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
+        )
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_in_axes1_z = (
+        rrrs_h_2_in_spec2_x*rrrs_h_2_t_19 - rrrs_h_2_in_spec2_y*rrrs_h_2_t_20
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx -
-            rrrs_joint2_offset_x
-        )
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
+        # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
+        rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
         # (potential) potential energy
         rrrs_b_in_spec1_y = rrrs_c_1*rrrs_potential_t + rrrs_potential_t_2*rrrs_s_1
         rrrs_b_in_spec1_z = rrrs_c_1*rrrs_potential_t_2 - rrrs_potential_t*rrrs_s_1
         rrrs_potential_t_5 = rrrs_c_3*rrrs_h_3_in_spec3_x + rrrs_h_3_in_spec3_y*rrrs_s_3_t
         rrrs_potential_t_6 = rrrs_c_3*rrrs_h_3_in_spec3_y - rrrs_h_3_in_spec3_x*rrrs_s_3_t
         rrrs_potential_t_7 = (
-        (rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1)*(rrrs_h_1_in_spec1_y +
-            rrrs_b_in_spec1_y*rrrs_link1_mass + rrrs_b_in_spec1_y*rrrs_link2_mass +
-            rrrs_c_2*rrrs_h_2_in_spec2_y + rrrs_c_2*rrrs_potential_t_6 +
-            rrrs_h_2_in_spec2_x*rrrs_s_2 + rrrs_potential_t_5*rrrs_s_2)
-        )
-        rrrs_potential_t_8 = (
-        rrrs_potential_t_7 + rrrs_g_in_axes1_z*(rrrs_h_1_in_spec1_x + rrrs_potential_t_3 +
-            rrrs_potential_t_4 + rrrs_c_2*rrrs_h_2_in_spec2_x + rrrs_c_2*rrrs_potential_t_5 -
-            rrrs_h_2_in_spec2_y*rrrs_s_2 - rrrs_potential_t_6*rrrs_s_2) + (rrrs_c_1*rrrs_mu_2_t_2
-            - rrrs_mu_2_t*rrrs_s_1)*(rrrs_h_1_in_spec1_z + rrrs_h_2_in_spec2_z +
-            rrrs_h_3_in_spec3_z + rrrs_b_in_spec1_z*rrrs_link1_mass +
-            rrrs_b_in_spec1_z*rrrs_link2_mass)
+        rrrs_g_in_axes1_x*(rrrs_h_1_in_spec1_y + rrrs_b_in_spec1_y*rrrs_link1_mass +
+            rrrs_b_in_spec1_y*rrrs_link2_mass + rrrs_h_2_in_spec2_x*rrrs_h_2_t_20 +
+            rrrs_h_2_in_spec2_y*rrrs_h_2_t_19 + rrrs_h_2_t_19*rrrs_potential_t_6 +
+            rrrs_h_2_t_20*rrrs_potential_t_5) + rrrs_g_in_axes1_y*(rrrs_h_1_in_spec1_z +
+            rrrs_h_2_in_spec2_z + rrrs_h_3_in_spec3_z + rrrs_b_in_spec1_z*rrrs_link1_mass +
+            rrrs_b_in_spec1_z*rrrs_link2_mass) + rrrs_g_in_axes1_z*(rrrs_h_1_in_spec1_x +
+            rrrs_h_2_in_axes1_z + rrrs_potential_t_3 + rrrs_potential_t_4 +
+            rrrs_h_2_t_19*rrrs_potential_t_5 - rrrs_h_2_t_20*rrrs_potential_t_6)
         )
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0)
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0)
         )
         # (potential) potential energy
-        potential_t_2 += rrrs_potential_t_8
+        potential_t_2 += rrrs_potential_t_7
     # (potential) potential energy
     potential = -potential_t - potential_t_2
     # (potential) potential energy
@@ -5748,15 +5780,14 @@ def _run_condition(m, X):
     for leg, k in legs[0]:
         (
         inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
-            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size, rrrs_size_t_3,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -5766,67 +5797,62 @@ def _run_condition(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_y = (
-        rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t
-        )
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -5854,22 +5880,22 @@ def _run_condition(m, X):
         rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
             rrrs_base_frame_zz*rrrs_w_2_t_2
         )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
-        rrrs_w_2_x = (
-        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y)
-        )
-        rrrs_w_2_y = (
-        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z)
-        )
-        rrrs_w_2_z = (
-        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x)
-        )
+        rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
+        rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
+        rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rrrs_pivot_size = abs(rrrs_rho2_1)
-        rrrs_pivot_size_2 = abs(rrrs_rho2_2)
+        rrrs_pivot_size = abs(rrrs_h_2_t_9)
+        rrrs_pivot_size_2 = abs(rrrs_h_2_t_16)
         rrrs_pivot_size_3 = abs(rrrs_v_1_in_axes3_z)
         rrrs_pivot_size_4 = abs(rrrs_r_2_in_axes3_y)
         rrrs_least_pivots = (
@@ -5894,11 +5920,12 @@ def _run_condition(m, X):
             rrrs_spread_t_3*rrrs_spread_t_3
         )
         clear = (
-        clear & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE *
-            rrrs_size) & (abs(rrrs_r_2_in_axes3_y) > _TOLERANCE * rrrs_size)
+        clear & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_h_2_t_16) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) &
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size)
         )
-        reached = reached & (rrrs_disc_2 >= 0.0)
+        reached = reached & (rrrs_h_2_t_17 >= 0.0)
         # (spread) rms distance of the platform points from their centroid
         spread_rrrs += rrrs_spread_t_4
         # (rrrs-w_1) reciprocal vector 1
@@ -5919,7 +5946,7 @@ def _run_condition(m, X):
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrrs[0][leg]] = rrrs_least_pivots
-        out_reach[_reach_rrrs[0][leg]] = rrrs_disc_2
+        out_reach[_reach_rrrs[0][leg]] = rrrs_h_2_t_17
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_rrrs)*spread_t
     # (spread) rms distance of the platform points from their centroid
@@ -6172,12 +6199,12 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[[0, 1, 3, 4, 6, 7]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
-    gap = _wrapped(subtract_1, [0, 1, 2, 3, 4, 5])
-    return (gap,)
+    residual = _wrapped(subtract_1, [0, 1, 2, 3, 4, 5])
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -6186,7 +6213,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

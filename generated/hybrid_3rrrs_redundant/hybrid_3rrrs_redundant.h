@@ -186,19 +186,19 @@ typedef struct {
             rrrs_J_2_in_spec2_yy[2], rrrs_J_2_in_spec2_yz[2], rrrs_J_3_in_spec3_xx[2],
             rrrs_J_3_in_spec3_xy[2], rrrs_J_3_in_spec3_xz[2], rrrs_J_3_in_spec3_yy[2],
             rrrs_J_3_in_spec3_yz[2], rrrs_J_3_in_spec3_zz[2], rrrs_Jc_2_in_axes2_zz[2],
-            rrrs_Kd_2_t[2], rrrs_Kd_2_t_2[2], rrrs_Sigma_2_in_axes2_xx[2],
-            rrrs_Sigma_2_in_axes2_yy[2], rrrs_Sigma_2_in_axes2_zz[2], rrrs_Sigma_3_in_axes3_xx[2],
-            rrrs_Sigma_3_in_axes3_yy[2], rrrs_Sigma_3_in_axes3_zz[2], rrrs_base_frame_xx[2],
-            rrrs_base_frame_xy[2], rrrs_base_frame_xz[2], rrrs_base_frame_yx[2],
-            rrrs_base_frame_yy[2], rrrs_base_frame_yz[2], rrrs_base_frame_zx[2],
-            rrrs_base_frame_zy[2], rrrs_base_frame_zz[2], rrrs_base_point_x[2], rrrs_base_point_y[2],
-            rrrs_base_point_z[2], rrrs_branch_1[2], rrrs_branch_2[2], rrrs_d_Gamma_3_in_axes3_y[2],
-            rrrs_d_Gamma_3_t[2], rrrs_d_c_in_axes3_yy[2], rrrs_d_phi_3_t[2], rrrs_g_in_axes1_z[2],
-            rrrs_h_1_in_spec1_x[2], rrrs_h_1_in_spec1_y[2], rrrs_h_1_in_spec1_z[2],
-            rrrs_h_2_in_spec2_x[2], rrrs_h_2_in_spec2_y[2], rrrs_h_2_in_spec2_z[2],
-            rrrs_h_3_in_spec3_x[2], rrrs_h_3_in_spec3_y[2], rrrs_h_3_in_spec3_z[2],
-            rrrs_joint2_offset_x[2], rrrs_joint3_offset_x[2], rrrs_link1_mass[2], rrrs_link2_mass[2],
-            rrrs_link3_mass[2], rrrs_mu_2_t[2], rrrs_mu_2_t_2[2], rrrs_platform_joint_offset_x[2],
+            rrrs_Sigma_2_in_axes2_xx[2], rrrs_Sigma_2_in_axes2_yy[2], rrrs_Sigma_2_in_axes2_zz[2],
+            rrrs_Sigma_3_in_axes3_xx[2], rrrs_Sigma_3_in_axes3_yy[2], rrrs_Sigma_3_in_axes3_zz[2],
+            rrrs_base_frame_xx[2], rrrs_base_frame_xy[2], rrrs_base_frame_xz[2],
+            rrrs_base_frame_yx[2], rrrs_base_frame_yy[2], rrrs_base_frame_yz[2],
+            rrrs_base_frame_zx[2], rrrs_base_frame_zy[2], rrrs_base_frame_zz[2], rrrs_base_point_x[2],
+            rrrs_base_point_y[2], rrrs_base_point_z[2], rrrs_branch_1[2], rrrs_branch_2[2],
+            rrrs_d_Gamma_3_in_axes3_y[2], rrrs_d_Gamma_3_t[2], rrrs_d_c_in_axes3_yy[2],
+            rrrs_d_phi_3_t[2], rrrs_g_in_axes1_z[2], rrrs_h_1_in_spec1_x[2], rrrs_h_1_in_spec1_y[2],
+            rrrs_h_1_in_spec1_z[2], rrrs_h_2_in_spec2_x[2], rrrs_h_2_in_spec2_y[2],
+            rrrs_h_2_in_spec2_z[2], rrrs_h_2_t[2], rrrs_h_2_t_2[2], rrrs_h_3_in_spec3_x[2],
+            rrrs_h_3_in_spec3_y[2], rrrs_h_3_in_spec3_z[2], rrrs_joint2_offset_x[2],
+            rrrs_joint3_offset_x[2], rrrs_link1_mass[2], rrrs_link2_mass[2], rrrs_link3_mass[2],
+            rrrs_mu_2_t[2], rrrs_mu_2_t_2[2], rrrs_platform_joint_offset_x[2],
             rrrs_platform_point_x[2], rrrs_platform_point_y[2], rrrs_platform_point_z[2],
             rrrs_potential_t[2], rrrs_potential_t_2[2], rrrs_potential_t_3[2], rrrs_potential_t_4[2],
             rrrs_rho2_2_t[2], rrrs_size[2], rrrs_size_t_3[2], rrrs_w_3_in_axes3_y[2];
@@ -223,13 +223,13 @@ extern const char *const hybrid_3rrrs_redundant_ACTUATOR_NAMES[HYBRID_3RRRS_REDU
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, hybrid_3rrrs_redundant_model *model);
 
-/* Inertia matrix M. 753 mul, 578 add, 12 div, 6 sqrt, 2 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 758 mul, 579 add, 12 div, 6 sqrt, 2 trig. In: X (NQ). Out: M (NV x NV). */
 int hybrid_3rrrs_redundant_M(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *M);
 size_t hybrid_3rrrs_redundant_M_batch(const hybrid_3rrrs_redundant_model *model, size_t n, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1046 mul, 781 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1055 mul, 787 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hybrid_3rrrs_redundant_Z(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -252,7 +252,7 @@ int hybrid_3rrrs_redundant_inverse_kinematics(const hybrid_3rrrs_redundant_model
 size_t hybrid_3rrrs_redundant_inverse_kinematics_batch(const hybrid_3rrrs_redundant_model *model,
     size_t n, const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *q, int *status);
 
-/* Rates of all joints. 357 mul, 210 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 363 mul, 210 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int hybrid_3rrrs_redundant_joint_rates(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -261,7 +261,7 @@ size_t hybrid_3rrrs_redundant_joint_rates_batch(const hybrid_3rrrs_redundant_mod
     n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
     hybrid_3rrrs_redundant_real *rates, int *status);
 
-/* Accelerations of all joints. 601 mul, 365 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 601 mul, 368 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hybrid_3rrrs_redundant_joint_accelerations(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const
@@ -270,7 +270,7 @@ size_t hybrid_3rrrs_redundant_joint_accelerations_batch(const hybrid_3rrrs_redun
     size_t n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const
     hybrid_3rrrs_redundant_real *A, hybrid_3rrrs_redundant_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1547 mul, 1206 add, 12 div, 6 sqrt, 2 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1525 mul, 1189 add, 12 div, 6 sqrt, 2 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3rrrs_redundant_dynamics(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -281,7 +281,7 @@ size_t hybrid_3rrrs_redundant_dynamics_batch(const hybrid_3rrrs_redundant_model 
     hybrid_3rrrs_redundant_real *M, hybrid_3rrrs_redundant_real *Z, hybrid_3rrrs_redundant_real
     *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1145 mul, 858 add, 12 div, 6 sqrt, 2
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1139 mul, 852 add, 12 div, 6 sqrt, 2
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hybrid_3rrrs_redundant_inverse_dynamics(const hybrid_3rrrs_redundant_model *model, const
@@ -293,7 +293,7 @@ size_t hybrid_3rrrs_redundant_inverse_dynamics_batch(const hybrid_3rrrs_redundan
     hybrid_3rrrs_redundant_real *A, const hybrid_3rrrs_redundant_real *wrench,
     hybrid_3rrrs_redundant_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1547 mul, 1206 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 1525 mul, 1189 add, 12 div, 6
    sqrt, 2 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hybrid_3rrrs_redundant_forward_dynamics(const hybrid_3rrrs_redundant_model *model, const
@@ -318,7 +318,7 @@ size_t hybrid_3rrrs_redundant_complete_acceleration_batch(const hybrid_3rrrs_red
     hybrid_3rrrs_redundant_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 986 mul, 715 add, 12 div, 6 sqrt, 2 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 986 mul, 718 add, 12 div, 6 sqrt, 2 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int hybrid_3rrrs_redundant_leg_reactions(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const
@@ -389,7 +389,7 @@ size_t hybrid_3rrrs_redundant_dissipation_batch(const hybrid_3rrrs_redundant_mod
     n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
     hybrid_3rrrs_redundant_real *dissipation, int *status);
 
-/* Generalised momentum M V. 753 mul, 578 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 758 mul, 579 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hybrid_3rrrs_redundant_momentum(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -421,7 +421,7 @@ int hybrid_3rrrs_redundant_actuator_positions(const hybrid_3rrrs_redundant_model
 size_t hybrid_3rrrs_redundant_actuator_positions_batch(const hybrid_3rrrs_redundant_model *model,
     size_t n, const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 357 mul, 210 add, 12 div, 6 sqrt, 2 trig.
+/* Rates of the actuated joints, in the order of tau. 363 mul, 210 add, 12 div, 6 sqrt, 2 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int hybrid_3rrrs_redundant_actuator_rates(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -430,7 +430,7 @@ size_t hybrid_3rrrs_redundant_actuator_rates_batch(const hybrid_3rrrs_redundant_
     size_t n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
     hybrid_3rrrs_redundant_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 601 mul, 365 add, 12 div, 6 sqrt, 2
+/* Accelerations of the actuated joints, in the order of tau. 601 mul, 368 add, 12 div, 6 sqrt, 2
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hybrid_3rrrs_redundant_actuator_accelerations(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const

@@ -1024,6 +1024,8 @@ def _prepare(p):
     )
     rrrs_J_1_in_spec1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t - rrrs_J_1_t_2)
     # (rrrs-h_2) first moment of link 2 about the origin of link 2
+    rrrs_h_2_t = 0.5*rrrs_size_t
+    rrrs_h_2_t_2 = 0.5*rrrs_size_t_2
     rrrs_h_2_in_spec2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
     rrrs_h_2_in_spec2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
     rrrs_h_2_in_spec2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
@@ -1071,9 +1073,6 @@ def _prepare(p):
         rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
     )
     rrrs_J_3_in_spec3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 - rrrs_J_3_t_4)
-    # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    rrrs_Kd_2_t = 0.5*rrrs_size_t
-    rrrs_Kd_2_t_2 = 0.5*rrrs_size_t_2
     # (rrrs-rho2_2) squared amplitude
     rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3
     # (rrrs-x_3) from the origin of joint 3 to the connection point
@@ -1211,9 +1210,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_rrrrs,
         (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xx,
@@ -1248,16 +1247,16 @@ def _prepare(p):
                     rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
                     rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
                     rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy,
-                    rrrs_d_phi_3_t, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
-                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Sigma_2_in_axes2_xx,
+                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y,
+                    rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_g_in_axes1_z,
+                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
@@ -1297,13 +1296,13 @@ def _prepare(p):
                     rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
                     rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
                     rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy,
-                    rrrs_d_phi_3_t, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y,
+                    rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_h_2_t,
+                    rrrs_h_2_t_2, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
                     rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
                     rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
@@ -1312,9 +1311,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_rrrrs,
         (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
@@ -1342,15 +1341,15 @@ def _prepare(p):
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
                     rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
-                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
+                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
+                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
@@ -1374,11 +1373,11 @@ def _prepare(p):
                     rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
                     rrrs_size_t_3,),
@@ -1417,15 +1416,15 @@ def _prepare(p):
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
                     rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
-                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
+                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
+                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
@@ -1449,11 +1448,11 @@ def _prepare(p):
                     rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size_t_3,),
                 ),
@@ -1474,11 +1473,11 @@ def _prepare(p):
                     rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
                     rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
@@ -1500,11 +1499,11 @@ def _prepare(p):
                     rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
                     rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
@@ -1540,15 +1539,15 @@ def _prepare(p):
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
                     rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
-                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
+                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
+                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_mu_2_t,
                     rrrs_mu_2_t_2, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
@@ -1579,13 +1578,13 @@ def _prepare(p):
                     rrrrs_potential_t_3, rrrrs_potential_t_4, rrrrs_rho2_3_t, rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
-                    rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
-                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_x,
+                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass,
                     rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
@@ -1612,11 +1611,11 @@ def _prepare(p):
                 ),
                 (_rrrs,
         (inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
-                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
                     rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
                 ),
@@ -2280,11 +2279,11 @@ def _extended(a, size):
     return np.concatenate((a, np.zeros((size - len(a), a.shape[1]))))
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -2516,8 +2515,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -2525,7 +2524,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -2533,11 +2532,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -2585,17 +2584,16 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1547 mul, 1206 add, 12 div, 6 sqrt, 2 trig
+# dynamics: 1525 mul, 1189 add, 12 div, 6 sqrt, 2 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2677,45 +2675,18 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_rrrrs_zz,
         M_ta_rrrrs_xx, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yy, M_ta_rrrrs_yz,
-        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_ta_rrrrs_zz, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_t,
-        M_aa_t_2, M_aa_rrrrs_yz, M_aa_rrrrs_zz, Z_t_rrrrs_x, Z_t_rrrrs_y, Z_t_rrrrs_z,
-        Z_a_rrrrs_x, Z_a_rrrrs_y, Z_a_rrrrs_z,
+        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_ta_rrrrs_zz, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_rrrrs_xz,
+        M_aa_rrrrs_yy, M_aa_t, M_aa_rrrrs_zz, Z_t_rrrrs_x, Z_t_rrrrs_y, Z_t_rrrrs_z, Z_a_rrrrs_x,
+        Z_a_rrrrs_y, Z_a_rrrrs_z,
     ) = [0.0] * 27
     for leg, k in legs[0]:
         (
@@ -2979,6 +2950,7 @@ def _run_dynamics(m, X, V):
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
         )
         # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        rrrrs_zeta_4_in_axes4_x = rrrrs_omega_1_in_axes4_y*rrrrs_qd_4
         rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*rrrrs_qd_4
         # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
         rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
@@ -3052,12 +3024,9 @@ def _run_dynamics(m, X, V):
         rrrrs_B_3_o_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_o_in_axes3_x
         rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y
         rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x
-        # (rrrrs-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
-        rrrrs_d_alpha_4_in_axes4_xz = rrrrs_e_1_in_axes4_x*rrrrs_w_1_in_axes4_z
-        rrrrs_d_alpha_4_in_axes4_yz = rrrrs_e_1_in_axes4_y*rrrrs_w_1_in_axes4_z
         # (rrrrs-alpha_4_o) remainder of: angular acceleration of link 4
         rrrrs_alpha_4_o_in_axes4_x = (
-        rrrrs_alpha_3_o_in_axes3_x*rrrrs_c_4 + rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 -
+        rrrrs_zeta_4_in_axes4_x + rrrrs_alpha_3_o_in_axes3_x*rrrrs_c_4 -
             rrrrs_alpha_3_o_in_axes3_y*rrrrs_s_4_t
         )
         rrrrs_alpha_4_o_in_axes4_y = (
@@ -3080,56 +3049,64 @@ def _run_dynamics(m, X, V):
         rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
         # (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3
         rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x
-        # (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_27
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
         rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*rrrrs_h_3_t_7 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_6
         rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*rrrrs_h_3_t_6 - rrrrs_g_in_axes1_z*rrrrs_h_3_t_7
+        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_27
+        # (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         rrrrs_acc_3_o_in_axes3_x = (
-        rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_27 -
-            rrrrs_g_in_axes2_x*rrrrs_h_3_t_26 - rrrrs_g_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_acc_3_t_3 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_27 - rrrrs_g_in_axes3_x
         )
         rrrrs_acc_3_o_in_axes3_y = (
-        rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_26 + rrrrs_g_in_axes2_x*rrrrs_h_3_t_27 -
-            rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_27 - rrrrs_g_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_acc_3_t_4 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_y
         )
         rrrrs_acc_3_o_in_axes3_z = (
         rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
         )
+        # (rrrrs-f_3) inertia force of link 3 less its weight
+        rrrrs_f_3_t = rrrrs_omega_1_t*rrrrs_omega_1_t
+        rrrrs_f_3_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
+        rrrrs_f_3_t_3 = rrrrs_h_3_in_spec3_x*(rrrrs_bias_t_2 + rrrrs_f_3_t_2)
+        rrrrs_f_3_t_4 = rrrrs_h_3_in_spec3_y*(rrrrs_bias_t_2 + rrrrs_f_3_t)
+        rrrrs_f_3_t_5 = rrrrs_h_3_in_spec3_z*(rrrrs_f_3_t + rrrrs_f_3_t_2)
         # (rrrrs-f_3_o) remainder of: inertia force of link 3 less its weight
-        rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t
-        rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
         rrrrs_f_3_o_in_axes3_x = (
         rrrrs_B_3_o_in_axes3_xy*rrrrs_h_3_in_spec3_y +
             rrrrs_B_3_o_in_axes3_xz*rrrrs_h_3_in_spec3_z +
-            rrrrs_acc_3_o_in_axes3_x*rrrrs_link3_mass - rrrrs_h_3_in_spec3_x*(rrrrs_bias_t_2 +
-            rrrrs_f_3_o_t_2)
+            rrrrs_acc_3_o_in_axes3_x*rrrrs_link3_mass - rrrrs_f_3_t_3
         )
         rrrrs_f_3_o_in_axes3_y = (
         rrrrs_B_3_o_in_axes3_yx*rrrrs_h_3_in_spec3_x +
             rrrrs_B_3_o_in_axes3_yz*rrrrs_h_3_in_spec3_z +
-            rrrrs_acc_3_o_in_axes3_y*rrrrs_link3_mass - rrrrs_h_3_in_spec3_y*(rrrrs_bias_t_2 +
-            rrrrs_f_3_o_t)
+            rrrrs_acc_3_o_in_axes3_y*rrrrs_link3_mass - rrrrs_f_3_t_4
         )
         rrrrs_f_3_o_in_axes3_z = (
         rrrrs_B_3_o_in_axes3_zx*rrrrs_h_3_in_spec3_x +
             rrrrs_B_3_o_in_axes3_zy*rrrrs_h_3_in_spec3_y +
-            rrrrs_acc_3_o_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_o_t +
-            rrrrs_f_3_o_t_2)
+            rrrrs_acc_3_o_in_axes3_z*rrrrs_link3_mass - rrrrs_f_3_t_5
         )
-        # (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
-        rrrrs_acc_4_o_in_axes4_x = (
-        rrrrs_u_1_in_axes4_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
+        # (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity
+        rrrrs_g_in_axes4_x = (
+        axis_x_rrrrs_axes4_x*gravity_x + axis_x_rrrrs_axes4_y*gravity_y +
             axis_x_rrrrs_axes4_z*gravity_z
         )
-        rrrrs_acc_4_o_in_axes4_y = (
-        rrrrs_u_1_in_axes4_y - axis_y_rrrrs_axes4_x*gravity_x - axis_y_rrrrs_axes4_y*gravity_y -
+        rrrrs_g_in_axes4_y = (
+        axis_y_rrrrs_axes4_x*gravity_x + axis_y_rrrrs_axes4_y*gravity_y +
             axis_y_rrrrs_axes4_z*gravity_z
         )
-        rrrrs_acc_4_o_in_axes4_z = (
-        rrrrs_u_1_in_axes4_z - axis_z_rrrrs_axes4_x*gravity_x - axis_z_rrrrs_axes4_y*gravity_y -
+        rrrrs_g_in_axes4_z = (
+        axis_z_rrrrs_axes4_x*gravity_x + axis_z_rrrrs_axes4_y*gravity_y +
             axis_z_rrrrs_axes4_z*gravity_z
         )
+        # (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
+        rrrrs_acc_4_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_g_in_axes4_x
+        rrrrs_acc_4_o_in_axes4_y = rrrrs_u_1_in_axes4_y - rrrrs_g_in_axes4_y
+        rrrrs_acc_4_o_in_axes4_z = rrrrs_u_1_in_axes4_z - rrrrs_g_in_axes4_z
         # (rrrrs-D_1_4) inertia of joint 4 along joint 1
         rrrrs_D_1_4 = (
         rrrrs_J_4_in_spec4_xz*rrrrs_e_1_in_axes4_x + rrrrs_J_4_in_spec4_yz*rrrrs_e_1_in_axes4_y
@@ -3171,6 +3148,9 @@ def _run_dynamics(m, X, V):
         rrrrs_L_c_3_2_in_axes2_z = (
         rrrrs_Jc_3_in_axes3_zz + rrrrs_h_3_in_axes2_x*rrrrs_joint3_offset_x
         )
+        rrrrs_L_c_3_2_in_axes1_z = (
+        rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_6 - rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_7
+        )
         # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
         rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_27
         rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_26 - rrrrs_Jc_2_t_2
@@ -3191,11 +3171,14 @@ def _run_dynamics(m, X, V):
             + rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_26) + rrrrs_h_3_t_27*(rrrrs_Jc_2_t_4 +
             rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_27)))
         )
+        # (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        rrrrs_mu_4_t = rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2 - rrrrs_W_4_t)
+        rrrrs_mu_4_t_2 = rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t - rrrrs_W_4_t)
+        rrrrs_mu_4_t_3 = rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t - rrrrs_W_1_t_2)
         # (rrrrs-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their reference points
         rrrrs_mu_4_o_in_axes4_x = (
-        rrrrs_B_4_o_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
+        rrrrs_mu_4_t + rrrrs_B_4_o_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
             rrrrs_B_4_o_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy +
-            rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2 - rrrrs_W_4_t) +
             rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_y -
             rrrrs_B_4_o_in_axes4_yz*rrrrs_Sigma_4_in_axes4_zz -
             rrrrs_B_4_o_in_axes4_zx*rrrrs_J_4_in_spec4_xy -
@@ -3204,15 +3187,15 @@ def _run_dynamics(m, X, V):
         rrrrs_mu_4_o_in_axes4_y = (
         rrrrs_B_4_o_in_axes4_xz*rrrrs_Sigma_4_in_axes4_zz +
             rrrrs_B_4_o_in_axes4_zy*rrrrs_J_4_in_spec4_xy +
-            rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_z -
+            rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_z - rrrrs_mu_4_t_2 -
             rrrrs_B_4_o_in_axes4_xy*rrrrs_J_4_in_spec4_yz -
-            rrrrs_B_4_o_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx - rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t
-            - rrrrs_W_4_t) - rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_x
+            rrrrs_B_4_o_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx -
+            rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_x
         )
         rrrrs_mu_4_o_in_axes4_z = (
-        rrrrs_B_4_o_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
-            rrrrs_B_4_o_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx + rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t
-            - rrrrs_W_1_t_2) + rrrrs_acc_4_o_in_axes4_y*rrrrs_h_4_in_spec4_x -
+        rrrrs_mu_4_t_3 + rrrrs_B_4_o_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
+            rrrrs_B_4_o_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx +
+            rrrrs_acc_4_o_in_axes4_y*rrrrs_h_4_in_spec4_x -
             rrrrs_B_4_o_in_axes4_xy*rrrrs_Sigma_4_in_axes4_yy -
             rrrrs_B_4_o_in_axes4_yz*rrrrs_J_4_in_spec4_xz -
             rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_y
@@ -3231,11 +3214,14 @@ def _run_dynamics(m, X, V):
         rrrrs_dy_2_Gamma_4 = (
         rrrrs_J_4_in_spec4_zz + rrrrs_dy_2_Gamma_4_t + rrrrs_J_4_in_spec4_zz*rrrrs_w_3_t_7
         )
+        # (rrrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrrs_mu_3_t = rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_t_2 - rrrrs_bias_t_2)
+        rrrrs_mu_3_t_2 = rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_t - rrrrs_bias_t_2)
+        rrrrs_mu_3_t_3 = rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_t - rrrrs_f_3_t_2)
         # (rrrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         rrrrs_mu_3_o_in_axes3_x = (
-        rrrrs_B_3_o_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
+        rrrrs_mu_3_t + rrrrs_B_3_o_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
             rrrrs_B_3_o_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy +
-            rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_o_t_2 - rrrrs_bias_t_2) +
             rrrrs_acc_3_o_in_axes3_z*rrrrs_h_3_in_spec3_y -
             rrrrs_B_3_o_in_axes3_yz*rrrrs_Sigma_3_in_axes3_zz -
             rrrrs_B_3_o_in_axes3_zx*rrrrs_J_3_in_spec3_xy -
@@ -3244,16 +3230,14 @@ def _run_dynamics(m, X, V):
         rrrrs_mu_3_o_in_axes3_y = (
         rrrrs_B_3_o_in_axes3_xz*rrrrs_Sigma_3_in_axes3_zz +
             rrrrs_B_3_o_in_axes3_zy*rrrrs_J_3_in_spec3_xy +
-            rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_z -
+            rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_z - rrrrs_mu_3_t_2 -
             rrrrs_B_3_o_in_axes3_xy*rrrrs_J_3_in_spec3_yz -
             rrrrs_B_3_o_in_axes3_zx*rrrrs_Sigma_3_in_axes3_xx -
-            rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_o_t - rrrrs_bias_t_2) -
             rrrrs_acc_3_o_in_axes3_z*rrrrs_h_3_in_spec3_x
         )
         rrrrs_mu_3_o_in_axes3_z = (
-        rrrrs_B_3_o_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
+        rrrrs_mu_3_t_3 + rrrrs_B_3_o_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
             rrrrs_B_3_o_in_axes3_yx*rrrrs_Sigma_3_in_axes3_xx +
-            rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_o_t - rrrrs_f_3_o_t_2) +
             rrrrs_acc_3_o_in_axes3_y*rrrrs_h_3_in_spec3_x -
             rrrrs_B_3_o_in_axes3_xy*rrrrs_Sigma_3_in_axes3_yy -
             rrrrs_B_3_o_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
@@ -3277,32 +3261,38 @@ def _run_dynamics(m, X, V):
         rrrrs_dy_2_Gamma_3 = (
         rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t + rrrrs_Jc_3_in_axes3_zz*rrrrs_w_3_t_7
         )
+        # (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrrs_mu_2_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x
+        rrrrs_mu_2_t_2 = rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t - rrrrs_bias_t)
+        rrrrs_mu_2_t_3 = rrrrs_J_2_in_spec2_xz*(rrrrs_mu_2_t - rrrrs_bias_t)
+        rrrrs_mu_2_t_4 = rrrrs_J_2_in_spec2_xy*(rrrrs_mu_2_t - rrrrs_a_o_3_t)
+        rrrrs_mu_2_t_5 = (
+        rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_y - rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z
+        )
+        rrrrs_mu_2_t_6 = (
+        rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z - rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_x
+        )
+        rrrrs_mu_2_t_7 = (
+        rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x - rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y
+        )
         # (rrrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x
         rrrrs_mu_2_o_in_axes2_x = (
-        rrrrs_B_2_o_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy +
-            rrrrs_J_2_in_spec2_xz*rrrrs_W_2_in_axes2_xy + rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t -
-            rrrrs_bias_t) + rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_x +
-            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z -
-            rrrrs_B_2_o_in_axes2_zx*rrrrs_J_2_in_spec2_xy -
-            rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_y
+        rrrrs_mu_2_t_2 + rrrrs_B_2_o_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy +
+            rrrrs_J_2_in_spec2_xz*rrrrs_W_2_in_axes2_xy +
+            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_x - rrrrs_mu_2_t_5 -
+            rrrrs_B_2_o_in_axes2_zx*rrrrs_J_2_in_spec2_xy
         )
         rrrrs_mu_2_o_in_axes2_y = (
         rrrrs_B_2_o_in_axes2_zy*rrrrs_J_2_in_spec2_xy +
-            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_y +
-            rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_x -
-            rrrrs_B_2_o_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
-            rrrrs_J_2_in_spec2_xz*(rrrrs_mu_2_o_t - rrrrs_bias_t) -
-            rrrrs_J_2_in_spec2_yz*rrrrs_W_2_in_axes2_xy - rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z
+            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_y - rrrrs_mu_2_t_3 - rrrrs_mu_2_t_6
+            - rrrrs_B_2_o_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
+            rrrrs_J_2_in_spec2_yz*rrrrs_W_2_in_axes2_xy
         )
         rrrrs_mu_2_o_in_axes2_z = (
-        rrrrs_J_2_in_spec2_xy*(rrrrs_mu_2_o_t - rrrrs_a_o_3_t) +
-            rrrrs_J_2_in_spec2_xz*rrrrs_alpha_1_o_in_axes2_x +
+        rrrrs_mu_2_t_4 + rrrrs_J_2_in_spec2_xz*rrrrs_alpha_1_o_in_axes2_x +
             rrrrs_J_2_in_spec2_yz*rrrrs_alpha_1_o_in_axes2_y +
-            rrrrs_Sigma_2_in_axes2_xx*rrrrs_W_2_in_axes2_xy +
-            rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y -
-            rrrrs_Sigma_2_in_axes2_yy*rrrrs_W_2_in_axes2_xy -
-            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x
+            rrrrs_Sigma_2_in_axes2_xx*rrrrs_W_2_in_axes2_xy - rrrrs_mu_2_t_7 -
+            rrrrs_Sigma_2_in_axes2_yy*rrrrs_W_2_in_axes2_xy
         )
         # (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_o_in_axes2_x = (
@@ -3328,23 +3318,31 @@ def _run_dynamics(m, X, V):
         rrrrs_J_2_in_spec2_zz + rrrrs_Jc_2_t_7 + rrrrs_Jc_3_in_axes3_zz + rrrrs_dy_2_Gamma_4_t +
             rrrrs_L_c_3_2_in_axes2_z*rrrrs_w_3_t_7
         )
-        # (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrrrs_mu_1_o_in_axes1_z = (
-        rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o + rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z -
-            rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y
+        # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrrrs_mu_1_t = (
+        rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y - rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z
         )
+        # (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
+        rrrrs_mu_1_o_in_axes1_z = rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o - rrrrs_mu_1_t
         # (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrrs_N_1_o_in_axes1_z = (
         rrrrs_mu_1_o_in_axes1_z + rrrrs_N_2_o_in_axes2_x*rrrrs_h_3_t_6 -
             rrrrs_N_2_o_in_axes2_y*rrrrs_h_3_t_7
         )
         # (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrrs_d_Gamma_1_t = rrrrs_D_1_4*rrrrs_w_4_in_axes4_y
+        rrrrs_d_Gamma_1_in_axes4_x = (
+        rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_z + rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes1_z
+            - rrrrs_d_Gamma_1_t*rrrrs_r_3_in_axes4_x)
+        )
+        rrrrs_d_Gamma_1_in_axes4_y = rrrrs_d_Gamma_1_t - rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_z
         rrrrs_d_Gamma_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_y + rrrrs_w_1_in_axes4_z*(rrrrs_J_1_in_spec1_xx +
             rrrrs_Jc_2_in_axes1_zz) - rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x
         )
         # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rrrrs_d_G_in_axes4_yz = rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_y
+        rrrrs_d_G_in_axes4_zx = rrrrs_d_Gamma_1_in_axes4_x*rrrrs_w_1_in_axes4_z
+        rrrrs_d_G_in_axes4_zy = rrrrs_d_Gamma_1_in_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_d_G_in_axes4_xx = (
         rrrrs_d_Gamma_3_in_axes4_x*rrrrs_w_3_in_axes4_x +
             rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x
@@ -3353,11 +3351,6 @@ def _run_dynamics(m, X, V):
         rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_3_in_axes4_x +
             rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_x
         )
-        rrrrs_d_G_in_axes4_xz = (
-        rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
-            rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_6 -
-            rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_7)
-        )
         # (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y
         # (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -3365,31 +3358,26 @@ def _run_dynamics(m, X, V):
         rrrrs_G_o_in_axes4_x = (
         -rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_o_in_axes3_z)
         )
+        # (rrrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_c_t = rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x
+        rrrrs_c_t_2 = rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t)
+        rrrrs_c_t_3 = rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2)
         # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrrs_d_c_in_axes4_xx = (
         rrrrs_h_4_in_spec4_y*(rrrrs_w_3_in_axes4_x + rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx
         )
         rrrrs_d_c_in_axes4_xy = rrrrs_d_phi_4_t - rrrrs_d_G_in_axes4_xy
-        rrrrs_d_c_in_axes4_xz = (
-        -rrrrs_d_G_in_axes4_xz - rrrrs_d_alpha_4_in_axes4_yz*rrrrs_h_4_in_spec4_z
-        )
-        rrrrs_d_c_in_axes4_yz = (
-        rrrrs_d_alpha_4_in_axes4_xz*rrrrs_h_4_in_spec4_z - rrrrs_d_G_in_axes4_yz
-        )
         # (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrrs_c_o_in_axes4_x = (
-        rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x - rrrrs_G_o_in_axes4_x -
-            rrrrs_B_4_o_in_axes4_xy*rrrrs_h_4_in_spec4_y -
+        rrrrs_c_t - rrrrs_G_o_in_axes4_x - rrrrs_B_4_o_in_axes4_xy*rrrrs_h_4_in_spec4_y -
             rrrrs_B_4_o_in_axes4_xz*rrrrs_h_4_in_spec4_z
         )
         rrrrs_c_o_in_axes4_y = (
-        rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t) - rrrrs_G_o_in_axes4_y -
-            rrrrs_B_4_o_in_axes4_yx*rrrrs_h_4_in_spec4_x -
+        rrrrs_c_t_2 - rrrrs_G_o_in_axes4_y - rrrrs_B_4_o_in_axes4_yx*rrrrs_h_4_in_spec4_x -
             rrrrs_B_4_o_in_axes4_yz*rrrrs_h_4_in_spec4_z
         )
         rrrrs_c_o_in_axes4_z = (
-        rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2) -
-            rrrrs_B_4_o_in_axes4_zx*rrrrs_h_4_in_spec4_x -
+        rrrrs_c_t_3 - rrrrs_B_4_o_in_axes4_zx*rrrrs_h_4_in_spec4_x -
             rrrrs_B_4_o_in_axes4_zy*rrrrs_h_4_in_spec4_y -
             rrrrs_N_1_o_in_axes1_z*rrrrs_w_1_in_axes4_z
         )
@@ -3398,49 +3386,49 @@ def _run_dynamics(m, X, V):
         rrrrs_Q_t_2 = 0.5*rrrrs_Q_t
         rrrrs_Q_t_3 = (
         rrrrs_d_c_in_axes4_xx + rrrrs_d_Gamma_1_in_axes4_z*rrrrs_w_1_in_axes4_z +
-            rrrrs_d_alpha_4_in_axes4_xz*rrrrs_h_4_in_spec4_y -
-            rrrrs_d_alpha_4_in_axes4_yz*rrrrs_h_4_in_spec4_x
+            rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_y*rrrrs_w_1_in_axes4_z -
+            rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x*rrrrs_w_1_in_axes4_z
         )
         rrrrs_Q_t_4 = 0.5*rrrrs_Q_t_3
         rrrrs_Q_t_5 = (
-        axis_x_rrrrs_axes4_x*rrrrs_d_c_in_axes4_xy + axis_z_rrrrs_axes4_x*rrrrs_d_c_in_axes4_yz -
-            axis_y_rrrrs_axes4_x*rrrrs_Q_t_2
+        axis_y_rrrrs_axes4_x*rrrrs_Q_t_2 + axis_z_rrrrs_axes4_x*rrrrs_d_G_in_axes4_zy -
+            axis_x_rrrrs_axes4_x*rrrrs_d_c_in_axes4_xy
         )
         rrrrs_Q_t_6 = (
-        axis_x_rrrrs_axes4_y*rrrrs_d_c_in_axes4_xy + axis_z_rrrrs_axes4_y*rrrrs_d_c_in_axes4_yz -
-            axis_y_rrrrs_axes4_y*rrrrs_Q_t_2
+        axis_y_rrrrs_axes4_y*rrrrs_Q_t_2 + axis_z_rrrrs_axes4_y*rrrrs_d_G_in_axes4_zy -
+            axis_x_rrrrs_axes4_y*rrrrs_d_c_in_axes4_xy
         )
         rrrrs_Q_t_7 = (
-        axis_x_rrrrs_axes4_z*rrrrs_d_c_in_axes4_xy + axis_z_rrrrs_axes4_z*rrrrs_d_c_in_axes4_yz -
-            axis_y_rrrrs_axes4_z*rrrrs_Q_t_2
+        axis_y_rrrrs_axes4_z*rrrrs_Q_t_2 + axis_z_rrrrs_axes4_z*rrrrs_d_G_in_axes4_zy -
+            axis_x_rrrrs_axes4_z*rrrrs_d_c_in_axes4_xy
         )
         rrrrs_Q_t_8 = (
-        axis_z_rrrrs_axes4_x*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_x*rrrrs_d_c_in_axes4_xz
+        axis_x_rrrrs_axes4_x*rrrrs_d_G_in_axes4_zx + axis_z_rrrrs_axes4_x*rrrrs_Q_t_4
         )
         rrrrs_Q_t_9 = (
-        axis_z_rrrrs_axes4_y*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_y*rrrrs_d_c_in_axes4_xz
+        axis_x_rrrrs_axes4_y*rrrrs_d_G_in_axes4_zx + axis_z_rrrrs_axes4_y*rrrrs_Q_t_4
         )
         rrrrs_Q_t_10 = (
-        axis_z_rrrrs_axes4_z*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_z*rrrrs_d_c_in_axes4_xz
+        axis_x_rrrrs_axes4_z*rrrrs_d_G_in_axes4_zx + axis_z_rrrrs_axes4_z*rrrrs_Q_t_4
         )
-        rrrrs_Q_t_11 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_5 - axis_z_rrrrs_axes4_x*rrrrs_Q_t_8
-        rrrrs_Q_xx = -2.0*rrrrs_Q_t_11 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_t_11 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_5 + axis_z_rrrrs_axes4_x*rrrrs_Q_t_8
+        rrrrs_Q_xx = 2.0*rrrrs_Q_t_11 - rrrrs_d_c_in_axes4_xx
         rrrrs_Q_xy = (
-        axis_z_rrrrs_axes4_x*rrrrs_Q_t_9 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_8 -
-            axis_y_rrrrs_axes4_x*rrrrs_Q_t_6 - axis_y_rrrrs_axes4_y*rrrrs_Q_t_5
+        axis_y_rrrrs_axes4_x*rrrrs_Q_t_6 + axis_y_rrrrs_axes4_y*rrrrs_Q_t_5 +
+            axis_z_rrrrs_axes4_x*rrrrs_Q_t_9 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_8
         )
         rrrrs_Q_xz = (
-        axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_8 -
-            axis_y_rrrrs_axes4_x*rrrrs_Q_t_7 - axis_y_rrrrs_axes4_z*rrrrs_Q_t_5
+        axis_y_rrrrs_axes4_x*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_z*rrrrs_Q_t_5 +
+            axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_8
         )
-        rrrrs_Q_t_12 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 - axis_z_rrrrs_axes4_y*rrrrs_Q_t_9
-        rrrrs_Q_yy = -2.0*rrrrs_Q_t_12 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_t_12 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_9
+        rrrrs_Q_yy = 2.0*rrrrs_Q_t_12 - rrrrs_d_c_in_axes4_xx
         rrrrs_Q_yz = (
-        axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_9 -
-            axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 - axis_y_rrrrs_axes4_z*rrrrs_Q_t_6
+        axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_z*rrrrs_Q_t_6 +
+            axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_9
         )
-        rrrrs_Q_t_13 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_7 - axis_z_rrrrs_axes4_z*rrrrs_Q_t_10
-        rrrrs_Q_zz = -2.0*rrrrs_Q_t_13 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_t_13 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_7 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_10
+        rrrrs_Q_zz = 2.0*rrrrs_Q_t_13 - rrrrs_d_c_in_axes4_xx
         # (rrrrs-U) velocity and gravity terms of the leg force
         rrrrs_U_x = (
         -axis_x_rrrrs_axes4_x*rrrrs_c_o_in_axes4_x - axis_y_rrrrs_axes4_x*rrrrs_c_o_in_axes4_y -
@@ -3464,10 +3452,11 @@ def _run_dynamics(m, X, V):
             rrrrs_d_G_in_axes4_yy*rrrrs_r_2_in_axes4_x
         )
         rrrrs_d_P_2_in_axes4_z = (
-        rrrrs_d_G_in_axes4_xz*rrrrs_r_2_in_axes4_y +
+        rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
+            rrrrs_L_c_3_2_in_axes1_z*rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x) +
             rrrrs_w_1_in_axes4_z*(rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_xz + rrrrs_Jc_3_in_axes2_xz -
             rrrrs_d_P_2_t) - rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yz + rrrrs_Jc_3_in_axes2_yz)) -
-            rrrrs_d_G_in_axes4_yz*rrrrs_r_2_in_axes4_x
+            rrrrs_d_Gamma_4_in_axes4_z*rrrrs_r_2_in_axes4_x*rrrrs_w_4_in_axes4_y
         )
         rrrrs_d_P_2_x = (
         axis_x_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_x + axis_y_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_y
@@ -3494,25 +3483,25 @@ def _run_dynamics(m, X, V):
         )
         rrrrs_P_2_o = rrrrs_N_2_o_in_axes2_z + rrrrs_P_2_o_t
         # (M_ta) coupling block of M
-        rrrrs_M_ta_t = -rrrrs_Q_xy*rrrrs_q_z
+        rrrrs_M_ta_t = rrrrs_Q_xy*rrrrs_q_z
         rrrrs_M_ta_t_2 = rrrrs_Q_xz*rrrrs_q_y
-        rrrrs_M_ta_t_3 = rrrrs_M_ta_t + rrrrs_M_ta_t_2
-        rrrrs_M_ta_t_4 = rrrrs_Q_xz*rrrrs_q_x - rrrrs_Q_xx*rrrrs_q_z
-        rrrrs_M_ta_t_5 = rrrrs_Q_xy*rrrrs_q_x - rrrrs_Q_xx*rrrrs_q_y
-        rrrrs_M_ta_t_6 = rrrrs_Q_yz*rrrrs_q_y - rrrrs_Q_yy*rrrrs_q_z
-        rrrrs_M_ta_t_7 = -rrrrs_Q_yz*rrrrs_q_x
+        rrrrs_M_ta_t_3 = rrrrs_M_ta_t_2 - rrrrs_M_ta_t
+        rrrrs_M_ta_t_4 = rrrrs_Q_xx*rrrrs_q_z - rrrrs_Q_xz*rrrrs_q_x
+        rrrrs_M_ta_t_5 = rrrrs_Q_xx*rrrrs_q_y - rrrrs_Q_xy*rrrrs_q_x
+        rrrrs_M_ta_t_6 = rrrrs_Q_yy*rrrrs_q_z - rrrrs_Q_yz*rrrrs_q_y
+        rrrrs_M_ta_t_7 = rrrrs_Q_yz*rrrrs_q_x
         rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7
         rrrrs_M_ta_t_9 = rrrrs_Q_yy*rrrrs_q_x - rrrrs_Q_xy*rrrrs_q_y
-        rrrrs_M_ta_t_10 = rrrrs_Q_zz*rrrrs_q_y - rrrrs_Q_yz*rrrrs_q_z
+        rrrrs_M_ta_t_10 = rrrrs_Q_yz*rrrrs_q_z - rrrrs_Q_zz*rrrrs_q_y
         rrrrs_M_ta_t_11 = rrrrs_Q_xz*rrrrs_q_z - rrrrs_Q_zz*rrrrs_q_x
-        rrrrs_M_ta_t_12 = rrrrs_M_ta_t_2 + rrrrs_M_ta_t_7
+        rrrrs_M_ta_t_12 = rrrrs_M_ta_t_7 - rrrrs_M_ta_t_2
         # (M_aa) rotational block of M
-        rrrrs_M_aa_t = rrrrs_M_ta_t_10*rrrrs_q_y - rrrrs_M_ta_t_6*rrrrs_q_z
-        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*rrrrs_q_y + rrrrs_M_ta_t_8*rrrrs_q_z
-        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*rrrrs_q_y + rrrrs_M_ta_t_9*rrrrs_q_z
-        rrrrs_M_aa_t_4 = rrrrs_M_ta_t_11*rrrrs_q_x + rrrrs_M_ta_t_4*rrrrs_q_z
+        rrrrs_M_aa_t = rrrrs_M_ta_t_6*rrrrs_q_z - rrrrs_M_ta_t_10*rrrrs_q_y
+        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*rrrrs_q_y - rrrrs_M_ta_t_8*rrrrs_q_z
+        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*rrrrs_q_y - rrrrs_M_ta_t_9*rrrrs_q_z
+        rrrrs_M_aa_t_4 = rrrrs_M_ta_t_4*rrrrs_q_z - rrrrs_M_ta_t_11*rrrrs_q_x
         rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*rrrrs_q_x + rrrrs_M_ta_t_5*rrrrs_q_z
-        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_9*rrrrs_q_x - rrrrs_M_ta_t_5*rrrrs_q_y
+        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_5*rrrrs_q_y + rrrrs_M_ta_t_9*rrrrs_q_x
         # (Z_a) rotational part of Z
         rrrrs_Z_a_t = rrrrs_U_z*rrrrs_q_y - rrrrs_U_y*rrrrs_q_z
         rrrrs_Z_a_t_2 = rrrrs_U_x*rrrrs_q_z - rrrrs_U_z*rrrrs_q_x
@@ -3544,20 +3533,20 @@ def _run_dynamics(m, X, V):
         M_tt_rrrrs_zz += rrrrs_Q_zz
         # (M_ta) coupling block of M
         M_ta_rrrrs_xx += rrrrs_M_ta_t_3
-        M_ta_rrrrs_xy += -rrrrs_M_ta_t_4
-        M_ta_rrrrs_xz += rrrrs_M_ta_t_5
-        M_ta_rrrrs_yx += rrrrs_M_ta_t_6
-        M_ta_rrrrs_yy += -rrrrs_M_ta_t_8
+        M_ta_rrrrs_xy += rrrrs_M_ta_t_4
+        M_ta_rrrrs_xz += -rrrrs_M_ta_t_5
+        M_ta_rrrrs_yx += -rrrrs_M_ta_t_6
+        M_ta_rrrrs_yy += rrrrs_M_ta_t_8
         M_ta_rrrrs_yz += rrrrs_M_ta_t_9
-        M_ta_rrrrs_zx += rrrrs_M_ta_t_10
+        M_ta_rrrrs_zx += -rrrrs_M_ta_t_10
         M_ta_rrrrs_zy += rrrrs_M_ta_t_11
-        M_ta_rrrrs_zz += -rrrrs_M_ta_t_12
+        M_ta_rrrrs_zz += rrrrs_M_ta_t_12
         # (M_aa) rotational block of M
         M_aa_rrrrs_xx += rrrrs_M_aa_t
         M_aa_rrrrs_xy += rrrrs_M_aa_t_2
-        M_aa_t += rrrrs_M_aa_t_3
-        M_aa_t_2 += rrrrs_M_aa_t_4
-        M_aa_rrrrs_yz += rrrrs_M_aa_t_5
+        M_aa_rrrrs_xz += rrrrs_M_aa_t_3
+        M_aa_rrrrs_yy += rrrrs_M_aa_t_4
+        M_aa_t += rrrrs_M_aa_t_5
         M_aa_rrrrs_zz += rrrrs_M_aa_t_6
         # (Z_t) translational part of Z
         Z_t_rrrrs_x += rrrrs_U_x
@@ -3618,21 +3607,21 @@ def _run_dynamics(m, X, V):
             rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
             rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
             rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t,
-            rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
-            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Sigma_2_in_axes2_xx,
+            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t,
+            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
             rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
             rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -3642,56 +3631,52 @@ def _run_dynamics(m, X, V):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
         rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
@@ -3706,10 +3691,10 @@ def _run_dynamics(m, X, V):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -3768,8 +3753,8 @@ def _run_dynamics(m, X, V):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
         rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
         rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
@@ -3801,12 +3786,13 @@ def _run_dynamics(m, X, V):
         rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -3845,8 +3831,8 @@ def _run_dynamics(m, X, V):
         # (rrrs-qdd_2_o) remainder of: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder of: angular acceleration of link 1
-        rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
-        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
+        rrrs_alpha_1_o_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = rrrs_h_2_t_20*rrrs_qdd_1_o
         # (rrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
         rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
@@ -3855,12 +3841,9 @@ def _run_dynamics(m, X, V):
         rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o
         rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - rrrs_zeta_2_in_axes2_y
         rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x
-        # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z
         # (rrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrs_alpha_3_o_in_axes3_x = (
-        rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+        rrrs_zeta_3_in_axes3_x + rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 -
             rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t
         )
         rrrs_alpha_3_o_in_axes3_y = (
@@ -3877,19 +3860,23 @@ def _run_dynamics(m, X, V):
         rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x
         rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y
         rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x
-        # (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_o_in_axes3_x = (
-        rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrs_g_in_axes3_x = (
+        axis_x_rrrs_axes3_x*gravity_x + axis_x_rrrs_axes3_y*gravity_y +
             axis_x_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_in_axes3_y = (
-        rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_y = (
+        axis_y_rrrs_axes3_x*gravity_x + axis_y_rrrs_axes3_y*gravity_y +
             axis_y_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_in_axes3_z = (
-        rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_z = (
+        axis_z_rrrs_axes3_x*gravity_x + axis_z_rrrs_axes3_y*gravity_y +
             axis_z_rrrs_axes3_z*gravity_z
         )
+        # (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_g_in_axes3_x
+        rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_g_in_axes3_y
+        rrrs_acc_3_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_g_in_axes3_z
         # (rrrs-D_1_3) inertia of joint 3 along joint 1
         rrrs_D_1_3 = (
         rrrs_J_3_in_spec3_xz*rrrs_e_1_in_axes3_x + rrrs_J_3_in_spec3_yz*rrrs_e_1_in_axes3_y
@@ -3903,20 +3890,23 @@ def _run_dynamics(m, X, V):
         rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
         )
         rrrs_Jc_2_in_axes1_zz = (
-        rrrs_c_2*(rrrs_c_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
-            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_s_2) -
-            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_in_spec2_yy +
-            rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
-            rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
+        rrrs_h_2_t_19*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
+            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_20) -
+            rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_19 -
+            rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yy + rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 -
+            rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
         )
+        # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
+        rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
+        rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_t_4 = rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_5 = rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_6 = rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2)
         # (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
-        rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
-        rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
         rrrs_mu_3_o_in_axes3_x = (
-        rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+        rrrs_mu_3_t_4 + rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
             rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
-            rrrs_J_3_in_spec3_yz*(rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
             rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
             rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
             rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
@@ -3925,54 +3915,62 @@ def _run_dynamics(m, X, V):
         rrrs_mu_3_o_in_axes3_y = (
         rrrs_B_3_o_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
             rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
-            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z - rrrs_mu_3_t_5 -
             rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_o_t
-            - rrrs_mu_3_o_t_3) - rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x
+            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx -
+            rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x
         )
         rrrs_mu_3_o_in_axes3_z = (
-        rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
-            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_o_t
-            - rrrs_mu_3_o_t_2) + rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
+        rrrs_mu_3_t_6 + rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx +
+            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y
         )
         # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*rrrs_w_1_in_axes3_z
         rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x
         rrrs_d_Gamma_3_in_axes3_x = (
         rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
         )
-        # (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_o_t_2 = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_mu_2_o_t_3 = rrrs_qd_2_t*rrrs_qd_2_t
+        # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
+        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
-        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
+        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
+        rrrs_mu_2_t_9 = (
+        rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z
+        )
+        rrrs_mu_2_t_10 = (
+        rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z - rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x
+        )
+        rrrs_mu_2_t_11 = (
+        rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y
+        )
+        # (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_o_in_axes2_x = (
-        rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+        rrrs_mu_2_t_6 + rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
             rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
-            rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x +
-            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x - rrrs_mu_2_t_9 -
+            rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy
         )
         rrrs_mu_2_o_in_axes2_y = (
-        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy + rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x -
+        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy - rrrs_mu_2_t_10 - rrrs_mu_2_t_7 -
             rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
-            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
-            - rrrs_mu_2_o_t_3) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t -
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
+            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t
         )
         rrrs_mu_2_o_in_axes2_z = (
-        rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t -
-            rrrs_mu_2_o_t_2) + rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x +
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
+        rrrs_mu_2_t_8 + rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x - rrrs_mu_2_t_11 -
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
-            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
+            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t
         )
         # (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_o_in_axes2_x = (
@@ -3988,30 +3986,40 @@ def _run_dynamics(m, X, V):
         rrrs_d_Gamma_2_in_axes3_x = (
         rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
         )
-        # (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_o_in_axes1_z = (
-        rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
-            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
+        # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_t = (
+        rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z
         )
+        # (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_mu_1_t
         # (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
-        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_h_2_t_19 -
+            rrrs_N_2_o_in_axes2_y*rrrs_h_2_t_20
         )
         # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrs_d_Gamma_1_t = rrrs_D_1_3*rrrs_w_3_in_axes3_y
+        rrrs_d_Gamma_1_in_axes3_x = (
+        rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_z +
+            rrrs_w_2_in_axes3_x*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xz +
+            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
+            rrrs_d_Gamma_1_t*rrrs_r_2_in_axes3_x - rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yz +
+            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
+        )
+        rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t - rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_z
         rrrs_d_Gamma_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y + rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx +
             rrrs_Jc_2_in_axes1_zz) - rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x
         )
         # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rrrs_d_G_in_axes3_xz = (
-        rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
-            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_xz +
-            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
-            rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*rrrs_c_3 -
-            rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
-        )
+        rrrs_d_G_in_axes3_zx = rrrs_d_Gamma_1_in_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_d_G_in_axes3_zy = rrrs_d_Gamma_1_in_axes3_y*rrrs_w_1_in_axes3_z
         # (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
+        # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_t = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3)
+        rrrs_c_t_2 = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3)
+        rrrs_c_t_3 = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2)
         # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrs_d_c_in_axes3_xx = (
         rrrs_h_3_in_spec3_y*(rrrs_w_2_in_axes3_x + rrrs_w_3_in_axes3_x) -
@@ -4022,28 +4030,18 @@ def _run_dynamics(m, X, V):
         rrrs_d_phi_3_t - rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
             rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x
         )
-        rrrs_d_c_in_axes3_xz = (
-        -rrrs_d_G_in_axes3_xz - rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z
-        )
-        rrrs_d_c_in_axes3_yz = (
-        rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
-            rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y
-        )
         # (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_o_in_axes3_x = (
-        rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
-            rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
-            - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
+        rrrs_c_t + rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x -
+            rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
             rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_o_in_axes3_y = (
-        rrrs_h_3_in_spec3_y*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
-            rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
+        rrrs_c_t_2 - rrrs_G_o_in_axes3_y - rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_o_in_axes3_z = (
-        rrrs_h_3_in_spec3_z*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_2) -
-            rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
+        rrrs_c_t_3 - rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y - rrrs_N_1_o_in_axes1_z*rrrs_w_1_in_axes3_z
         )
         # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
@@ -4051,43 +4049,43 @@ def _run_dynamics(m, X, V):
         rrrs_Q_t_2 = 0.5*rrrs_Q_t
         rrrs_Q_t_3 = (
         rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
-            rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
-            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x
+            rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y*rrrs_w_1_in_axes3_z -
+            rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x*rrrs_w_1_in_axes3_z
         )
         rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
         rrrs_Q_t_5 = (
-        axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_x*rrrs_d_c_in_axes3_yz -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_2
+        axis_y_rrrs_axes3_x*rrrs_Q_t_2 + axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
+            axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy
         )
         rrrs_Q_t_6 = (
-        axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_y*rrrs_d_c_in_axes3_yz -
-            axis_y_rrrs_axes3_y*rrrs_Q_t_2
+        axis_y_rrrs_axes3_y*rrrs_Q_t_2 + axis_z_rrrs_axes3_y*rrrs_d_G_in_axes3_zy -
+            axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy
         )
         rrrs_Q_t_7 = (
-        axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_z*rrrs_d_c_in_axes3_yz -
-            axis_y_rrrs_axes3_z*rrrs_Q_t_2
+        axis_y_rrrs_axes3_z*rrrs_Q_t_2 + axis_z_rrrs_axes3_z*rrrs_d_G_in_axes3_zy -
+            axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy
         )
-        rrrs_Q_t_8 = axis_z_rrrs_axes3_x*rrrs_Q_t_4 - axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xz
-        rrrs_Q_t_9 = axis_z_rrrs_axes3_y*rrrs_Q_t_4 - axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xz
-        rrrs_Q_t_10 = axis_z_rrrs_axes3_z*rrrs_Q_t_4 - axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xz
-        rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_x*rrrs_Q_t_8
-        rrrs_Q_xx = -2.0*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_8 = axis_x_rrrs_axes3_x*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_x*rrrs_Q_t_4
+        rrrs_Q_t_9 = axis_x_rrrs_axes3_y*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_y*rrrs_Q_t_4
+        rrrs_Q_t_10 = axis_x_rrrs_axes3_z*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_z*rrrs_Q_t_4
+        rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 + axis_z_rrrs_axes3_x*rrrs_Q_t_8
+        rrrs_Q_xx = 2.0*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx
         rrrs_Q_xy = (
-        axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8 -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_6 - axis_y_rrrs_axes3_y*rrrs_Q_t_5
+        axis_y_rrrs_axes3_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
+            axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8
         )
         rrrs_Q_xz = (
-        axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8 -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_7 - axis_y_rrrs_axes3_z*rrrs_Q_t_5
+        axis_y_rrrs_axes3_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
+            axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8
         )
-        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_y*rrrs_Q_t_9
-        rrrs_Q_yy = -2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 + axis_z_rrrs_axes3_y*rrrs_Q_t_9
+        rrrs_Q_yy = 2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
         rrrs_Q_yz = (
-        axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9 -
-            axis_y_rrrs_axes3_y*rrrs_Q_t_7 - axis_y_rrrs_axes3_z*rrrs_Q_t_6
+        axis_y_rrrs_axes3_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
+            axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9
         )
-        rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_z*rrrs_Q_t_10
-        rrrs_Q_zz = -2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 + axis_z_rrrs_axes3_z*rrrs_Q_t_10
+        rrrs_Q_zz = 2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
         # (rrrs-U) velocity and gravity terms of the leg force
         rrrs_U_x = (
         -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y -
@@ -4134,8 +4132,8 @@ def _run_dynamics(m, X, V):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -4207,9 +4205,9 @@ def _run_dynamics(m, X, V):
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_rrrrs_xx + M_aa_rrrs_xx
     M_aa_xy = J_star_xy + M_aa_rrrrs_xy + M_aa_rrrs_xy
-    M_aa_xz = J_star_xz + M_aa_rrrs_xz - M_aa_t
-    M_aa_yy = J_star_yy + M_aa_rrrs_yy - M_aa_t_2
-    M_aa_yz = J_star_yz + M_aa_rrrrs_yz + M_aa_rrrs_yz
+    M_aa_xz = J_star_xz + M_aa_rrrrs_xz + M_aa_rrrs_xz
+    M_aa_yy = J_star_yy + M_aa_rrrrs_yy + M_aa_rrrs_yy
+    M_aa_yz = J_star_yz + M_aa_rrrs_yz - M_aa_t
     M_aa_zz = J_star_zz + M_aa_rrrrs_zz + M_aa_rrrs_zz
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_rrrrs_x + Z_t_rrrs_x
@@ -4269,7 +4267,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 753 mul, 578 add, 12 div, 6 sqrt, 2 trig
+# M: 758 mul, 579 add, 12 div, 6 sqrt, 2 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -4340,8 +4338,8 @@ def _run_M(m, X):
     (
     M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_rrrrs_zz,
         M_ta_rrrrs_xx, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yy, M_ta_rrrrs_yz,
-        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_ta_rrrrs_zz, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_t,
-        M_aa_t_2, M_aa_rrrrs_yz, M_aa_rrrrs_zz,
+        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_ta_rrrrs_zz, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_rrrrs_xz,
+        M_aa_rrrrs_yy, M_aa_t, M_aa_rrrrs_zz,
     ) = [0.0] * 21
     for leg, k in legs[0]:
         (
@@ -4455,16 +4453,42 @@ def _run_M(m, X):
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
         )
         # (rrrrs-w_1) reciprocal vector 1
+        axis_z_rrrrs_axes4_x = rrrrs_base_frame_xz*rrrrs_c_1 - rrrrs_base_frame_xy*rrrrs_s_1
+        axis_z_rrrrs_axes4_y = rrrrs_base_frame_yz*rrrrs_c_1 - rrrrs_base_frame_yy*rrrrs_s_1
+        axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 - rrrrs_base_frame_zy*rrrrs_s_1
         rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
+        rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
+        axis_y_rrrrs_axes4_x = (
+        rrrrs_base_frame_xx*rrrrs_w_3_t_3 + rrrrs_base_frame_xy*rrrrs_w_3_t_5 +
+            rrrrs_base_frame_xz*rrrrs_w_3_t_6
+        )
+        axis_y_rrrrs_axes4_y = (
+        rrrrs_base_frame_yx*rrrrs_w_3_t_3 + rrrrs_base_frame_yy*rrrrs_w_3_t_5 +
+            rrrrs_base_frame_yz*rrrrs_w_3_t_6
+        )
+        axis_y_rrrrs_axes4_z = (
+        rrrrs_base_frame_zx*rrrrs_w_3_t_3 + rrrrs_base_frame_zy*rrrrs_w_3_t_5 +
+            rrrrs_base_frame_zz*rrrrs_w_3_t_6
+        )
+        axis_x_rrrrs_axes4_x = (
+        axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
+        )
+        axis_x_rrrrs_axes4_y = (
+        axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x - axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z
+        )
+        axis_x_rrrrs_axes4_z = (
+        axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
+        )
         rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_7 = rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x
         # (rrrrs-w_4) reciprocal vector 3
         rrrrs_w_4_in_axes4_x = -rrrrs_r_3_in_axes4_x*rrrrs_w_3_in_axes4_x*rrrrs_w_4_in_axes4_y
-        # (rrrrs-dy_2_qdd_3) coefficient of the acceleration in: acceleration of joint 3
-        rrrrs_dy_2_qdd_3 = rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x
-        # (rrrrs-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
-        rrrrs_d_alpha_4_in_axes4_xz = rrrrs_e_1_in_axes4_x*rrrrs_w_1_in_axes4_z
-        rrrrs_d_alpha_4_in_axes4_yz = rrrrs_e_1_in_axes4_y*rrrrs_w_1_in_axes4_z
         # (rrrrs-D_1_4) inertia of joint 4 along joint 1
         rrrrs_D_1_4 = (
         rrrrs_J_4_in_spec4_xz*rrrrs_e_1_in_axes4_x + rrrrs_J_4_in_spec4_yz*rrrrs_e_1_in_axes4_y
@@ -4506,6 +4530,9 @@ def _run_M(m, X):
         rrrrs_L_c_3_2_in_axes2_z = (
         rrrrs_Jc_3_in_axes3_zz + rrrrs_h_3_in_axes2_x*rrrrs_joint3_offset_x
         )
+        rrrrs_L_c_3_2_in_axes1_z = (
+        rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_6 - rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_7
+        )
         # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
         rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_27
         rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_26 - rrrrs_Jc_2_t_2
@@ -4535,10 +4562,10 @@ def _run_M(m, X):
         # (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
         rrrrs_dy_2_Gamma_4_t = (
         rrrrs_J_4_in_spec4_zz*rrrrs_w_4_in_axes4_y*(-rrrrs_r_2_in_axes4_x -
-            rrrrs_dy_2_qdd_3*rrrrs_r_3_in_axes4_x)
+            rrrrs_r_3_in_axes4_x*rrrrs_w_3_t_7)
         )
         rrrrs_dy_2_Gamma_4 = (
-        rrrrs_J_4_in_spec4_zz + rrrrs_dy_2_Gamma_4_t + rrrrs_J_4_in_spec4_zz*rrrrs_dy_2_qdd_3
+        rrrrs_J_4_in_spec4_zz + rrrrs_dy_2_Gamma_4_t + rrrrs_J_4_in_spec4_zz*rrrrs_w_3_t_7
         )
         # (rrrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rrrrs_d_Gamma_3_in_axes4_x = (
@@ -4546,7 +4573,7 @@ def _run_M(m, X):
         )
         # (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rrrrs_dy_2_Gamma_3 = (
-        rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t + rrrrs_Jc_3_in_axes3_zz*rrrrs_dy_2_qdd_3
+        rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t + rrrrs_Jc_3_in_axes3_zz*rrrrs_w_3_t_7
         )
         # (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrrrs_d_Gamma_2_in_axes4_x = (
@@ -4556,15 +4583,22 @@ def _run_M(m, X):
         # (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrrrs_dy_2_Gamma_2 = (
         rrrrs_J_2_in_spec2_zz + rrrrs_Jc_2_t_7 + rrrrs_Jc_3_in_axes3_zz + rrrrs_dy_2_Gamma_4_t +
-            rrrrs_L_c_3_2_in_axes2_z*rrrrs_dy_2_qdd_3
+            rrrrs_L_c_3_2_in_axes2_z*rrrrs_w_3_t_7
         )
         # (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrrs_d_Gamma_1_t = rrrrs_D_1_4*rrrrs_w_4_in_axes4_y
+        rrrrs_d_Gamma_1_in_axes4_x = (
+        rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_z + rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes1_z
+            - rrrrs_d_Gamma_1_t*rrrrs_r_3_in_axes4_x)
+        )
+        rrrrs_d_Gamma_1_in_axes4_y = rrrrs_d_Gamma_1_t - rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_z
         rrrrs_d_Gamma_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_y + rrrrs_w_1_in_axes4_z*(rrrrs_J_1_in_spec1_xx +
             rrrrs_Jc_2_in_axes1_zz) - rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x
         )
         # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rrrrs_d_G_in_axes4_yz = rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_y
+        rrrrs_d_G_in_axes4_zx = rrrrs_d_Gamma_1_in_axes4_x*rrrrs_w_1_in_axes4_z
+        rrrrs_d_G_in_axes4_zy = rrrrs_d_Gamma_1_in_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_d_G_in_axes4_xx = (
         rrrrs_d_Gamma_3_in_axes4_x*rrrrs_w_3_in_axes4_x +
             rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x
@@ -4573,11 +4607,6 @@ def _run_M(m, X):
         rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_3_in_axes4_x +
             rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_x
         )
-        rrrrs_d_G_in_axes4_xz = (
-        rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
-            rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_6 -
-            rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_7)
-        )
         # (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y
         # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
@@ -4585,90 +4614,54 @@ def _run_M(m, X):
         rrrrs_h_4_in_spec4_y*(rrrrs_w_3_in_axes4_x + rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx
         )
         rrrrs_d_c_in_axes4_xy = rrrrs_d_phi_4_t - rrrrs_d_G_in_axes4_xy
-        rrrrs_d_c_in_axes4_xz = (
-        -rrrrs_d_G_in_axes4_xz - rrrrs_d_alpha_4_in_axes4_yz*rrrrs_h_4_in_spec4_z
-        )
-        rrrrs_d_c_in_axes4_yz = (
-        rrrrs_d_alpha_4_in_axes4_xz*rrrrs_h_4_in_spec4_z - rrrrs_d_G_in_axes4_yz
-        )
         # (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_z_rrrrs_axes4_x = rrrrs_base_frame_xz*rrrrs_c_1 - rrrrs_base_frame_xy*rrrrs_s_1
-        axis_z_rrrrs_axes4_y = rrrrs_base_frame_yz*rrrrs_c_1 - rrrrs_base_frame_yy*rrrrs_s_1
-        axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 - rrrrs_base_frame_zy*rrrrs_s_1
-        rrrrs_Q_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
-        rrrrs_Q_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
-        rrrrs_Q_t_3 = rrrrs_Q_t*rrrrs_h_3_t_6 - rrrrs_Q_t_2*rrrrs_h_3_t_7
-        rrrrs_Q_t_4 = rrrrs_Q_t*rrrrs_h_3_t_7 + rrrrs_Q_t_2*rrrrs_h_3_t_6
-        rrrrs_Q_t_5 = rrrrs_Q_t_4*rrrrs_c_1
-        rrrrs_Q_t_6 = rrrrs_Q_t_4*rrrrs_s_1
-        axis_y_rrrrs_axes4_x = (
-        rrrrs_Q_t_3*rrrrs_base_frame_xx + rrrrs_Q_t_5*rrrrs_base_frame_xy +
-            rrrrs_Q_t_6*rrrrs_base_frame_xz
-        )
-        axis_y_rrrrs_axes4_y = (
-        rrrrs_Q_t_3*rrrrs_base_frame_yx + rrrrs_Q_t_5*rrrrs_base_frame_yy +
-            rrrrs_Q_t_6*rrrrs_base_frame_yz
-        )
-        axis_y_rrrrs_axes4_z = (
-        rrrrs_Q_t_3*rrrrs_base_frame_zx + rrrrs_Q_t_5*rrrrs_base_frame_zy +
-            rrrrs_Q_t_6*rrrrs_base_frame_zz
-        )
-        axis_x_rrrrs_axes4_x = (
-        axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
-        )
-        axis_x_rrrrs_axes4_y = (
-        axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x - axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z
-        )
-        axis_x_rrrrs_axes4_z = (
-        axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
-        )
-        rrrrs_Q_t_7 = rrrrs_d_c_in_axes4_xx - rrrrs_d_c_in_axes4_yy
-        rrrrs_Q_t_8 = 0.5*rrrrs_Q_t_7
-        rrrrs_Q_t_9 = (
+        rrrrs_Q_t = rrrrs_d_c_in_axes4_xx - rrrrs_d_c_in_axes4_yy
+        rrrrs_Q_t_2 = 0.5*rrrrs_Q_t
+        rrrrs_Q_t_3 = (
         rrrrs_d_c_in_axes4_xx + rrrrs_d_Gamma_1_in_axes4_z*rrrrs_w_1_in_axes4_z +
-            rrrrs_d_alpha_4_in_axes4_xz*rrrrs_h_4_in_spec4_y -
-            rrrrs_d_alpha_4_in_axes4_yz*rrrrs_h_4_in_spec4_x
+            rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_y*rrrrs_w_1_in_axes4_z -
+            rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x*rrrrs_w_1_in_axes4_z
         )
-        rrrrs_Q_t_10 = 0.5*rrrrs_Q_t_9
-        rrrrs_Q_t_11 = (
-        axis_x_rrrrs_axes4_x*rrrrs_d_c_in_axes4_xy + axis_z_rrrrs_axes4_x*rrrrs_d_c_in_axes4_yz -
-            axis_y_rrrrs_axes4_x*rrrrs_Q_t_8
+        rrrrs_Q_t_4 = 0.5*rrrrs_Q_t_3
+        rrrrs_Q_t_5 = (
+        axis_y_rrrrs_axes4_x*rrrrs_Q_t_2 + axis_z_rrrrs_axes4_x*rrrrs_d_G_in_axes4_zy -
+            axis_x_rrrrs_axes4_x*rrrrs_d_c_in_axes4_xy
         )
-        rrrrs_Q_t_12 = (
-        axis_x_rrrrs_axes4_y*rrrrs_d_c_in_axes4_xy + axis_z_rrrrs_axes4_y*rrrrs_d_c_in_axes4_yz -
-            axis_y_rrrrs_axes4_y*rrrrs_Q_t_8
+        rrrrs_Q_t_6 = (
+        axis_y_rrrrs_axes4_y*rrrrs_Q_t_2 + axis_z_rrrrs_axes4_y*rrrrs_d_G_in_axes4_zy -
+            axis_x_rrrrs_axes4_y*rrrrs_d_c_in_axes4_xy
         )
-        rrrrs_Q_t_13 = (
-        axis_x_rrrrs_axes4_z*rrrrs_d_c_in_axes4_xy + axis_z_rrrrs_axes4_z*rrrrs_d_c_in_axes4_yz -
-            axis_y_rrrrs_axes4_z*rrrrs_Q_t_8
+        rrrrs_Q_t_7 = (
+        axis_y_rrrrs_axes4_z*rrrrs_Q_t_2 + axis_z_rrrrs_axes4_z*rrrrs_d_G_in_axes4_zy -
+            axis_x_rrrrs_axes4_z*rrrrs_d_c_in_axes4_xy
         )
-        rrrrs_Q_t_14 = (
-        axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 - axis_x_rrrrs_axes4_x*rrrrs_d_c_in_axes4_xz
+        rrrrs_Q_t_8 = (
+        axis_x_rrrrs_axes4_x*rrrrs_d_G_in_axes4_zx + axis_z_rrrrs_axes4_x*rrrrs_Q_t_4
         )
-        rrrrs_Q_t_15 = (
-        axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 - axis_x_rrrrs_axes4_y*rrrrs_d_c_in_axes4_xz
+        rrrrs_Q_t_9 = (
+        axis_x_rrrrs_axes4_y*rrrrs_d_G_in_axes4_zx + axis_z_rrrrs_axes4_y*rrrrs_Q_t_4
         )
-        rrrrs_Q_t_16 = (
-        axis_z_rrrrs_axes4_z*rrrrs_Q_t_10 - axis_x_rrrrs_axes4_z*rrrrs_d_c_in_axes4_xz
+        rrrrs_Q_t_10 = (
+        axis_x_rrrrs_axes4_z*rrrrs_d_G_in_axes4_zx + axis_z_rrrrs_axes4_z*rrrrs_Q_t_4
         )
-        rrrrs_Q_t_17 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_11 - axis_z_rrrrs_axes4_x*rrrrs_Q_t_14
-        rrrrs_Q_xx = -2.0*rrrrs_Q_t_17 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_t_11 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_5 + axis_z_rrrrs_axes4_x*rrrrs_Q_t_8
+        rrrrs_Q_xx = 2.0*rrrrs_Q_t_11 - rrrrs_d_c_in_axes4_xx
         rrrrs_Q_xy = (
-        axis_z_rrrrs_axes4_x*rrrrs_Q_t_15 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_14 -
-            axis_y_rrrrs_axes4_x*rrrrs_Q_t_12 - axis_y_rrrrs_axes4_y*rrrrs_Q_t_11
+        axis_y_rrrrs_axes4_x*rrrrs_Q_t_6 + axis_y_rrrrs_axes4_y*rrrrs_Q_t_5 +
+            axis_z_rrrrs_axes4_x*rrrrs_Q_t_9 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_8
         )
         rrrrs_Q_xz = (
-        axis_z_rrrrs_axes4_x*rrrrs_Q_t_16 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_14 -
-            axis_y_rrrrs_axes4_x*rrrrs_Q_t_13 - axis_y_rrrrs_axes4_z*rrrrs_Q_t_11
+        axis_y_rrrrs_axes4_x*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_z*rrrrs_Q_t_5 +
+            axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_8
         )
-        rrrrs_Q_t_18 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_12 - axis_z_rrrrs_axes4_y*rrrrs_Q_t_15
-        rrrrs_Q_yy = -2.0*rrrrs_Q_t_18 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_t_12 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_9
+        rrrrs_Q_yy = 2.0*rrrrs_Q_t_12 - rrrrs_d_c_in_axes4_xx
         rrrrs_Q_yz = (
-        axis_z_rrrrs_axes4_y*rrrrs_Q_t_16 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_15 -
-            axis_y_rrrrs_axes4_y*rrrrs_Q_t_13 - axis_y_rrrrs_axes4_z*rrrrs_Q_t_12
+        axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_z*rrrrs_Q_t_6 +
+            axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_9
         )
-        rrrrs_Q_t_19 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_13 - axis_z_rrrrs_axes4_z*rrrrs_Q_t_16
-        rrrrs_Q_zz = -2.0*rrrrs_Q_t_19 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_t_13 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_7 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_10
+        rrrrs_Q_zz = 2.0*rrrrs_Q_t_13 - rrrrs_d_c_in_axes4_xx
         # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_d_P_2_in_axes4_x = (
         rrrrs_d_Gamma_2_in_axes4_x + rrrrs_d_G_in_axes4_xx*rrrrs_r_2_in_axes4_y -
@@ -4679,10 +4672,11 @@ def _run_M(m, X):
             rrrrs_d_G_in_axes4_yy*rrrrs_r_2_in_axes4_x
         )
         rrrrs_d_P_2_in_axes4_z = (
-        rrrrs_d_G_in_axes4_xz*rrrrs_r_2_in_axes4_y +
+        rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
+            rrrrs_L_c_3_2_in_axes1_z*rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x) +
             rrrrs_w_1_in_axes4_z*(rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_xz + rrrrs_Jc_3_in_axes2_xz -
             rrrrs_d_P_2_t) - rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yz + rrrrs_Jc_3_in_axes2_yz)) -
-            rrrrs_d_G_in_axes4_yz*rrrrs_r_2_in_axes4_x
+            rrrrs_d_Gamma_4_in_axes4_z*rrrrs_r_2_in_axes4_x*rrrrs_w_4_in_axes4_y
         )
         rrrrs_d_P_2_x = (
         axis_x_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_x + axis_y_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_y
@@ -4704,25 +4698,25 @@ def _run_M(m, X):
         )
         rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t
         # (M_ta) coupling block of M
-        rrrrs_M_ta_t = -rrrrs_Q_xy*rrrrs_q_z
+        rrrrs_M_ta_t = rrrrs_Q_xy*rrrrs_q_z
         rrrrs_M_ta_t_2 = rrrrs_Q_xz*rrrrs_q_y
-        rrrrs_M_ta_t_3 = rrrrs_M_ta_t + rrrrs_M_ta_t_2
-        rrrrs_M_ta_t_4 = rrrrs_Q_xz*rrrrs_q_x - rrrrs_Q_xx*rrrrs_q_z
-        rrrrs_M_ta_t_5 = rrrrs_Q_xy*rrrrs_q_x - rrrrs_Q_xx*rrrrs_q_y
-        rrrrs_M_ta_t_6 = rrrrs_Q_yz*rrrrs_q_y - rrrrs_Q_yy*rrrrs_q_z
-        rrrrs_M_ta_t_7 = -rrrrs_Q_yz*rrrrs_q_x
+        rrrrs_M_ta_t_3 = rrrrs_M_ta_t_2 - rrrrs_M_ta_t
+        rrrrs_M_ta_t_4 = rrrrs_Q_xx*rrrrs_q_z - rrrrs_Q_xz*rrrrs_q_x
+        rrrrs_M_ta_t_5 = rrrrs_Q_xx*rrrrs_q_y - rrrrs_Q_xy*rrrrs_q_x
+        rrrrs_M_ta_t_6 = rrrrs_Q_yy*rrrrs_q_z - rrrrs_Q_yz*rrrrs_q_y
+        rrrrs_M_ta_t_7 = rrrrs_Q_yz*rrrrs_q_x
         rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7
         rrrrs_M_ta_t_9 = rrrrs_Q_yy*rrrrs_q_x - rrrrs_Q_xy*rrrrs_q_y
-        rrrrs_M_ta_t_10 = rrrrs_Q_zz*rrrrs_q_y - rrrrs_Q_yz*rrrrs_q_z
+        rrrrs_M_ta_t_10 = rrrrs_Q_yz*rrrrs_q_z - rrrrs_Q_zz*rrrrs_q_y
         rrrrs_M_ta_t_11 = rrrrs_Q_xz*rrrrs_q_z - rrrrs_Q_zz*rrrrs_q_x
-        rrrrs_M_ta_t_12 = rrrrs_M_ta_t_2 + rrrrs_M_ta_t_7
+        rrrrs_M_ta_t_12 = rrrrs_M_ta_t_7 - rrrrs_M_ta_t_2
         # (M_aa) rotational block of M
-        rrrrs_M_aa_t = rrrrs_M_ta_t_10*rrrrs_q_y - rrrrs_M_ta_t_6*rrrrs_q_z
-        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*rrrrs_q_y + rrrrs_M_ta_t_8*rrrrs_q_z
-        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*rrrrs_q_y + rrrrs_M_ta_t_9*rrrrs_q_z
-        rrrrs_M_aa_t_4 = rrrrs_M_ta_t_11*rrrrs_q_x + rrrrs_M_ta_t_4*rrrrs_q_z
+        rrrrs_M_aa_t = rrrrs_M_ta_t_6*rrrrs_q_z - rrrrs_M_ta_t_10*rrrrs_q_y
+        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*rrrrs_q_y - rrrrs_M_ta_t_8*rrrrs_q_z
+        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*rrrrs_q_y - rrrrs_M_ta_t_9*rrrrs_q_z
+        rrrrs_M_aa_t_4 = rrrrs_M_ta_t_4*rrrrs_q_z - rrrrs_M_ta_t_11*rrrrs_q_x
         rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*rrrrs_q_x + rrrrs_M_ta_t_5*rrrrs_q_z
-        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_9*rrrrs_q_x - rrrrs_M_ta_t_5*rrrrs_q_y
+        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_5*rrrrs_q_y + rrrrs_M_ta_t_9*rrrrs_q_x
         # (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform
         rrrrs_M_ya_2_x = rrrrs_d_P_2_z*rrrrs_q_y - rrrrs_d_P_2_y*rrrrs_q_z
         rrrrs_M_ya_2_y = rrrrs_d_P_2_x*rrrrs_q_z - rrrrs_d_P_2_z*rrrrs_q_x
@@ -4742,20 +4736,20 @@ def _run_M(m, X):
         M_tt_rrrrs_zz += rrrrs_Q_zz
         # (M_ta) coupling block of M
         M_ta_rrrrs_xx += rrrrs_M_ta_t_3
-        M_ta_rrrrs_xy += -rrrrs_M_ta_t_4
-        M_ta_rrrrs_xz += rrrrs_M_ta_t_5
-        M_ta_rrrrs_yx += rrrrs_M_ta_t_6
-        M_ta_rrrrs_yy += -rrrrs_M_ta_t_8
+        M_ta_rrrrs_xy += rrrrs_M_ta_t_4
+        M_ta_rrrrs_xz += -rrrrs_M_ta_t_5
+        M_ta_rrrrs_yx += -rrrrs_M_ta_t_6
+        M_ta_rrrrs_yy += rrrrs_M_ta_t_8
         M_ta_rrrrs_yz += rrrrs_M_ta_t_9
-        M_ta_rrrrs_zx += rrrrs_M_ta_t_10
+        M_ta_rrrrs_zx += -rrrrs_M_ta_t_10
         M_ta_rrrrs_zy += rrrrs_M_ta_t_11
-        M_ta_rrrrs_zz += -rrrrs_M_ta_t_12
+        M_ta_rrrrs_zz += rrrrs_M_ta_t_12
         # (M_aa) rotational block of M
         M_aa_rrrrs_xx += rrrrs_M_aa_t
         M_aa_rrrrs_xy += rrrrs_M_aa_t_2
-        M_aa_t += rrrrs_M_aa_t_3
-        M_aa_t_2 += rrrrs_M_aa_t_4
-        M_aa_rrrrs_yz += rrrrs_M_aa_t_5
+        M_aa_rrrrs_xz += rrrrs_M_aa_t_3
+        M_aa_rrrrs_yy += rrrrs_M_aa_t_4
+        M_aa_t += rrrrs_M_aa_t_5
         M_aa_rrrrs_zz += rrrrs_M_aa_t_6
         # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         out_M[_M_rrrrs[0][leg]] = rrrrs_d_P_2_x
@@ -4785,17 +4779,17 @@ def _run_M(m, X):
             rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
             rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
             rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t,
-            rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y,
+            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t,
+            rrrs_h_2_t, rrrs_h_2_t_2, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y,
             rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
             rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
             rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -4805,56 +4799,52 @@ def _run_M(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-r_2) from joint 2 to the connection point, along the links
         rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
@@ -4862,23 +4852,46 @@ def _run_M(m, X):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
         # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
         rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
         # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
+            rrrs_base_frame_xz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
+            rrrs_base_frame_yz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
+            rrrs_base_frame_zz*rrrs_w_2_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-w_3) reciprocal vector 3
         rrrs_w_3_in_axes3_x = -rrrs_r_2_in_axes3_x*rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y
-        # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z
         # (rrrs-D_1_3) inertia of joint 3 along joint 1
         rrrs_D_1_3 = (
         rrrs_J_3_in_spec3_xz*rrrs_e_1_in_axes3_x + rrrs_J_3_in_spec3_yz*rrrs_e_1_in_axes3_y
@@ -4892,14 +4905,13 @@ def _run_M(m, X):
         rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
         )
         rrrs_Jc_2_in_axes1_zz = (
-        rrrs_c_2*(rrrs_c_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
-            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_s_2) -
-            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_in_spec2_yy +
-            rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
-            rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
+        rrrs_h_2_t_19*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
+            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_20) -
+            rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_19 -
+            rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yy + rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 -
+            rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
         )
         # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*rrrs_w_1_in_axes3_z
         rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x
         rrrs_d_Gamma_3_in_axes3_x = (
         rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
@@ -4909,18 +4921,22 @@ def _run_M(m, X):
         rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
         )
         # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrs_d_Gamma_1_t = rrrs_D_1_3*rrrs_w_3_in_axes3_y
+        rrrs_d_Gamma_1_in_axes3_x = (
+        rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_z +
+            rrrs_w_2_in_axes3_x*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xz +
+            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
+            rrrs_d_Gamma_1_t*rrrs_r_2_in_axes3_x - rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yz +
+            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
+        )
+        rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t - rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_z
         rrrs_d_Gamma_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y + rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx +
             rrrs_Jc_2_in_axes1_zz) - rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x
         )
         # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rrrs_d_G_in_axes3_xz = (
-        rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
-            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_xz +
-            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
-            rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*rrrs_c_3 -
-            rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
-        )
+        rrrs_d_G_in_axes3_zx = rrrs_d_Gamma_1_in_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_d_G_in_axes3_zy = rrrs_d_Gamma_1_in_axes3_y*rrrs_w_1_in_axes3_z
         # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrs_d_c_in_axes3_xx = (
         rrrs_h_3_in_spec3_y*(rrrs_w_2_in_axes3_x + rrrs_w_3_in_axes3_x) -
@@ -4931,81 +4947,48 @@ def _run_M(m, X):
         rrrs_d_phi_3_t - rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
             rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x
         )
-        rrrs_d_c_in_axes3_xz = (
-        -rrrs_d_G_in_axes3_xz - rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z
-        )
-        rrrs_d_c_in_axes3_yz = (
-        rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
-            rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y
-        )
         # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
-        axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
-        axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_Q_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_Q_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
-        axis_y_rrrs_axes3_x = (
-        rrrs_Q_t*rrrs_base_frame_xy + rrrs_Q_t_2*rrrs_base_frame_xz +
-            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
+        rrrs_Q_t = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy
+        rrrs_Q_t_2 = 0.5*rrrs_Q_t
+        rrrs_Q_t_3 = (
+        rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
+            rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y*rrrs_w_1_in_axes3_z -
+            rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x*rrrs_w_1_in_axes3_z
         )
-        axis_y_rrrs_axes3_y = (
-        rrrs_Q_t*rrrs_base_frame_yy + rrrs_Q_t_2*rrrs_base_frame_yz +
-            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
-        )
-        axis_y_rrrs_axes3_z = (
-        rrrs_Q_t*rrrs_base_frame_zy + rrrs_Q_t_2*rrrs_base_frame_zz +
-            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
-        )
-        rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy
         rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
         rrrs_Q_t_5 = (
-        rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
-            rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
-            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x
+        axis_y_rrrs_axes3_x*rrrs_Q_t_2 + axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
+            axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy
         )
-        rrrs_Q_t_6 = 0.5*rrrs_Q_t_5
+        rrrs_Q_t_6 = (
+        axis_y_rrrs_axes3_y*rrrs_Q_t_2 + axis_z_rrrs_axes3_y*rrrs_d_G_in_axes3_zy -
+            axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy
+        )
         rrrs_Q_t_7 = (
-        axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_x*rrrs_d_c_in_axes3_yz -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_4
+        axis_y_rrrs_axes3_z*rrrs_Q_t_2 + axis_z_rrrs_axes3_z*rrrs_d_G_in_axes3_zy -
+            axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy
         )
-        rrrs_Q_t_8 = (
-        axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_y*rrrs_d_c_in_axes3_yz -
-            axis_y_rrrs_axes3_y*rrrs_Q_t_4
-        )
-        rrrs_Q_t_9 = (
-        axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_z*rrrs_d_c_in_axes3_yz -
-            axis_y_rrrs_axes3_z*rrrs_Q_t_4
-        )
-        rrrs_Q_t_10 = axis_z_rrrs_axes3_x*rrrs_Q_t_6 - axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xz
-        rrrs_Q_t_11 = axis_z_rrrs_axes3_y*rrrs_Q_t_6 - axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xz
-        rrrs_Q_t_12 = axis_z_rrrs_axes3_z*rrrs_Q_t_6 - axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xz
-        rrrs_Q_t_13 = axis_y_rrrs_axes3_x*rrrs_Q_t_7 - axis_z_rrrs_axes3_x*rrrs_Q_t_10
-        rrrs_Q_xx = -2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_8 = axis_x_rrrs_axes3_x*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_x*rrrs_Q_t_4
+        rrrs_Q_t_9 = axis_x_rrrs_axes3_y*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_y*rrrs_Q_t_4
+        rrrs_Q_t_10 = axis_x_rrrs_axes3_z*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_z*rrrs_Q_t_4
+        rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 + axis_z_rrrs_axes3_x*rrrs_Q_t_8
+        rrrs_Q_xx = 2.0*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx
         rrrs_Q_xy = (
-        axis_z_rrrs_axes3_x*rrrs_Q_t_11 + axis_z_rrrs_axes3_y*rrrs_Q_t_10 -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_8 - axis_y_rrrs_axes3_y*rrrs_Q_t_7
+        axis_y_rrrs_axes3_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
+            axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8
         )
         rrrs_Q_xz = (
-        axis_z_rrrs_axes3_x*rrrs_Q_t_12 + axis_z_rrrs_axes3_z*rrrs_Q_t_10 -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_9 - axis_y_rrrs_axes3_z*rrrs_Q_t_7
+        axis_y_rrrs_axes3_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
+            axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8
         )
-        rrrs_Q_t_14 = axis_y_rrrs_axes3_y*rrrs_Q_t_8 - axis_z_rrrs_axes3_y*rrrs_Q_t_11
-        rrrs_Q_yy = -2.0*rrrs_Q_t_14 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 + axis_z_rrrs_axes3_y*rrrs_Q_t_9
+        rrrs_Q_yy = 2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
         rrrs_Q_yz = (
-        axis_z_rrrs_axes3_y*rrrs_Q_t_12 + axis_z_rrrs_axes3_z*rrrs_Q_t_11 -
-            axis_y_rrrs_axes3_y*rrrs_Q_t_9 - axis_y_rrrs_axes3_z*rrrs_Q_t_8
+        axis_y_rrrs_axes3_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
+            axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9
         )
-        rrrs_Q_t_15 = axis_y_rrrs_axes3_z*rrrs_Q_t_9 - axis_z_rrrs_axes3_z*rrrs_Q_t_12
-        rrrs_Q_zz = -2.0*rrrs_Q_t_15 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 + axis_z_rrrs_axes3_z*rrrs_Q_t_10
+        rrrs_Q_zz = 2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
         # (M_ta) coupling block of M
         rrrs_M_ta_t = rrrs_Q_xy*rrrs_q_z
         rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y
@@ -5027,8 +5010,8 @@ def _run_M(m, X):
         rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x
         rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -5076,9 +5059,9 @@ def _run_M(m, X):
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_rrrrs_xx + M_aa_rrrs_xx
     M_aa_xy = J_star_xy + M_aa_rrrrs_xy + M_aa_rrrs_xy
-    M_aa_xz = J_star_xz + M_aa_rrrs_xz - M_aa_t
-    M_aa_yy = J_star_yy + M_aa_rrrs_yy - M_aa_t_2
-    M_aa_yz = J_star_yz + M_aa_rrrrs_yz + M_aa_rrrs_yz
+    M_aa_xz = J_star_xz + M_aa_rrrrs_xz + M_aa_rrrs_xz
+    M_aa_yy = J_star_yy + M_aa_rrrrs_yy + M_aa_rrrs_yy
+    M_aa_yz = J_star_yz + M_aa_rrrs_yz - M_aa_t
     M_aa_zz = J_star_zz + M_aa_rrrrs_zz + M_aa_rrrs_zz
     # (M_tt) translational block of M
     out_M[0] = M_tt_xx
@@ -5122,16 +5105,16 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1046 mul, 781 add, 12 div, 6 sqrt, 2 trig
+# Z: 1055 mul, 787 add, 12 div, 6 sqrt, 2 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -5187,6 +5170,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -5195,39 +5194,12 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_rrrrs_x, Z_t_rrrrs_y, Z_t_rrrrs_z, Z_a_rrrrs_x, Z_a_rrrrs_y, Z_a_rrrrs_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -5253,7 +5225,7 @@ def _run_Z(m, X, V):
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
-        # (rrrrs-S) from the base point to the connection point
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -5263,73 +5235,59 @@ def _run_Z(m, X, V):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_S_in_turn1_x = (
-        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
-            rrrrs_S_z*rrrrs_base_frame_zy
+        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
+        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
+        rrrrs_h_3_t_8 = (
+        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zy*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_y = (
-        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
-            rrrrs_S_z*rrrrs_base_frame_zz
+        rrrrs_h_3_t_9 = (
+        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zz*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_z = (
-        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
-            rrrrs_S_z*rrrrs_base_frame_zx
+        rrrrs_h_3_t_10 = (
+        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zx*rrrrs_h_3_t_5
         )
-        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrrs_s_2 = sin(rrrrs_y_2_extra)
-        # (rrrrs-rho2_1) squared amplitude
-        rrrrs_rho2_1 = (
-        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
+        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
+        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
+        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
+        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
+        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
+        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
+        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
+        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
         )
-        # (rrrrs-root_1) root, with the sign of the branch
-        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        rrrrs_h_3_t_27 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
+        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
+        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
-        # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_in_axes2_x = rrrrs_x_2_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z
-        rrrrs_x_2_t_2 = rrrrs_c_2*rrrrs_root_1
-        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 - rrrrs_s_2*rrrrs_x_2_in_axes1_z
-        # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
-        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t = (
-        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
-        )
-        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
-        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
-        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
-        # (rrrrs-rho2_3) squared amplitude
-        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
-        # (rrrrs-disc_3) discriminant
-        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
-        # (rrrrs-root_3) root, with the sign of the branch
-        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
-        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
-        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -5344,47 +5302,46 @@ def _run_Z(m, X, V):
         rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
         rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_c_3*rrrrs_x_2_in_axes2_x + rrrrs_s_3*rrrrs_x_2_in_axes2_y
-        rrrrs_r_2_t_2 = rrrrs_c_3*rrrrs_x_2_in_axes2_y - rrrrs_s_3*rrrrs_x_2_in_axes2_x
+        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
         rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
         rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
-        rrrrs_v_1_t_3 = rrrrs_x_2_t + rrrrs_S_in_turn1_z*rrrrs_c_2
-        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 - rrrrs_S_in_turn1_z*rrrrs_s_2
-        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
+        rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
+        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
-        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
-            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
-            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
+            rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
         )
         # (rrrrs-w_1) reciprocal vector 1
-        rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
-        # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
-        # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         axis_z_rrrrs_axes4_x = rrrrs_base_frame_xz*rrrrs_c_1 - rrrrs_base_frame_xy*rrrrs_s_1
         axis_z_rrrrs_axes4_y = rrrrs_base_frame_yz*rrrrs_c_1 - rrrrs_base_frame_yy*rrrrs_s_1
         axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 - rrrrs_base_frame_zy*rrrrs_s_1
-        rrrrs_S_dot_rest_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
-        rrrrs_S_dot_rest_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
-        rrrrs_S_dot_rest_t_3 = rrrrs_S_dot_rest_t*rrrrs_c_2 - rrrrs_S_dot_rest_t_2*rrrrs_s_2
-        rrrrs_S_dot_rest_t_4 = rrrrs_S_dot_rest_t*rrrrs_s_2 + rrrrs_S_dot_rest_t_2*rrrrs_c_2
-        rrrrs_S_dot_rest_t_5 = rrrrs_S_dot_rest_t_4*rrrrs_c_1
-        rrrrs_S_dot_rest_t_6 = rrrrs_S_dot_rest_t_4*rrrrs_s_1
+        rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
+        rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
-        rrrrs_S_dot_rest_t_3*rrrrs_base_frame_xx + rrrrs_S_dot_rest_t_5*rrrrs_base_frame_xy +
-            rrrrs_S_dot_rest_t_6*rrrrs_base_frame_xz
+        rrrrs_base_frame_xx*rrrrs_w_3_t_3 + rrrrs_base_frame_xy*rrrrs_w_3_t_5 +
+            rrrrs_base_frame_xz*rrrrs_w_3_t_6
         )
         axis_y_rrrrs_axes4_y = (
-        rrrrs_S_dot_rest_t_3*rrrrs_base_frame_yx + rrrrs_S_dot_rest_t_5*rrrrs_base_frame_yy +
-            rrrrs_S_dot_rest_t_6*rrrrs_base_frame_yz
+        rrrrs_base_frame_yx*rrrrs_w_3_t_3 + rrrrs_base_frame_yy*rrrrs_w_3_t_5 +
+            rrrrs_base_frame_yz*rrrrs_w_3_t_6
         )
         axis_y_rrrrs_axes4_z = (
-        rrrrs_S_dot_rest_t_3*rrrrs_base_frame_zx + rrrrs_S_dot_rest_t_5*rrrrs_base_frame_zy +
-            rrrrs_S_dot_rest_t_6*rrrrs_base_frame_zz
+        rrrrs_base_frame_zx*rrrrs_w_3_t_3 + rrrrs_base_frame_zy*rrrrs_w_3_t_5 +
+            rrrrs_base_frame_zz*rrrrs_w_3_t_6
         )
         axis_x_rrrrs_axes4_x = (
         axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
@@ -5395,6 +5352,8 @@ def _run_Z(m, X, V):
         axis_x_rrrrs_axes4_z = (
         axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
         )
+        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
+        # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         rrrrs_S_dot_rest_x = (
         rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
             axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y)
@@ -5424,11 +5383,13 @@ def _run_Z(m, X, V):
             rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_in_axes2_x = rrrrs_c_2*rrrrs_qd_1
-        rrrrs_omega_1_in_axes2_y = -rrrrs_qd_1*rrrrs_s_2
-        rrrrs_omega_1_t = rrrrs_c_3*rrrrs_omega_1_in_axes2_x + rrrrs_omega_1_in_axes2_y*rrrrs_s_3
+        rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
+        rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
+        rrrrs_omega_1_t = (
+        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_y
+        )
         rrrrs_omega_1_t_2 = (
-        rrrrs_c_3*rrrrs_omega_1_in_axes2_y - rrrrs_omega_1_in_axes2_x*rrrrs_s_3
+        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_x
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -5474,31 +5435,32 @@ def _run_Z(m, X, V):
         rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_c_3 -
-            rrrrs_W_2_in_axes2_xz*rrrrs_s_3
+        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_27
         )
         rrrrs_beta_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_c_3 -
-            rrrrs_W_2_in_axes2_yz*rrrrs_s_3
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_27
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
         )
         # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        rrrrs_zeta_4_in_axes4_x = rrrrs_omega_1_in_axes4_y*rrrrs_qd_4
         rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*rrrrs_qd_4
         # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
         rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
         # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_in_axes2_x = rrrrs_c_2*rrrrs_joint2_offset_x
-        rrrrs_d_2_in_axes2_y = -rrrrs_joint2_offset_x*rrrrs_s_2
+        rrrrs_d_2_in_axes2_x = rrrrs_h_3_t_6*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x + rrrrs_d_2_in_axes2_y*rrrrs_s_3
-        rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y - rrrrs_d_2_in_axes2_x*rrrrs_s_3
+        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_27
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
-        rrrrs_bias_t_5 = rrrrs_c_3*rrrrs_joint3_offset_x
-        rrrrs_bias_t_6 = rrrrs_joint3_offset_x*rrrrs_s_3
+        rrrrs_bias_t_5 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_bias_t_6 = rrrrs_h_3_t_27*rrrrs_joint3_offset_x
         rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
         rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
         rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
@@ -5534,8 +5496,8 @@ def _run_Z(m, X, V):
         # (rrrrs-qdd_3_o) remainder of: acceleration of joint 3
         rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*rrrrs_w_3_in_axes4_x
         # (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1
-        rrrrs_alpha_1_o_in_axes2_x = rrrrs_c_2*rrrrs_qdd_1_o
-        rrrrs_alpha_1_o_in_axes2_y = -rrrrs_qdd_1_o*rrrrs_s_2
+        rrrrs_alpha_1_o_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qdd_1_o
+        rrrrs_alpha_1_o_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qdd_1_o
         # (rrrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrrs_alpha_2_o_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_o_in_axes2_x
         rrrrs_alpha_2_o_in_axes2_y = rrrrs_alpha_1_o_in_axes2_y - rrrrs_W_2_in_axes2_xz
@@ -5544,12 +5506,12 @@ def _run_Z(m, X, V):
         rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x
         # (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrrs_alpha_3_o_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_o_in_axes2_x*rrrrs_c_3 +
-            rrrrs_alpha_2_o_in_axes2_y*rrrrs_s_3
+        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_26 +
+            rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_27
         )
         rrrrs_alpha_3_o_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_c_3 -
-            rrrrs_alpha_2_o_in_axes2_x*rrrrs_s_3
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_26 -
+            rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_27
         )
         # (rrrrs-B_3_o) remainder of the acceleration tensor of link 3
         rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o
@@ -5560,7 +5522,7 @@ def _run_Z(m, X, V):
         rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x
         # (rrrrs-alpha_4_o) remainder of: angular acceleration of link 4
         rrrrs_alpha_4_o_in_axes4_x = (
-        rrrrs_alpha_3_o_in_axes3_x*rrrrs_c_4 + rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 -
+        rrrrs_zeta_4_in_axes4_x + rrrrs_alpha_3_o_in_axes3_x*rrrrs_c_4 -
             rrrrs_alpha_3_o_in_axes3_y*rrrrs_s_4_t
         )
         rrrrs_alpha_4_o_in_axes4_y = (
@@ -5583,61 +5545,72 @@ def _run_Z(m, X, V):
         rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
         # (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3
         rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x
-        # (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_27
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
-        rrrrs_g_in_axes2_x = rrrrs_c_2*rrrrs_g_in_axes1_z + rrrrs_g_in_axes1_x*rrrrs_s_2
-        rrrrs_g_in_axes2_y = rrrrs_c_2*rrrrs_g_in_axes1_x - rrrrs_g_in_axes1_z*rrrrs_s_2
+        rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*rrrrs_h_3_t_7 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_6
+        rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*rrrrs_h_3_t_6 - rrrrs_g_in_axes1_z*rrrrs_h_3_t_7
+        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_27
+        # (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         rrrrs_acc_3_o_in_axes3_x = (
-        rrrrs_a_o_3_in_axes2_x*rrrrs_c_3 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_s_3 -
-            rrrrs_c_3*rrrrs_g_in_axes2_x - rrrrs_g_in_axes2_y*rrrrs_s_3
+        rrrrs_acc_3_t_3 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_27 - rrrrs_g_in_axes3_x
         )
         rrrrs_acc_3_o_in_axes3_y = (
-        rrrrs_a_o_3_o_in_axes2_y*rrrrs_c_3 + rrrrs_g_in_axes2_x*rrrrs_s_3 -
-            rrrrs_a_o_3_in_axes2_x*rrrrs_s_3 - rrrrs_c_3*rrrrs_g_in_axes2_y
+        rrrrs_acc_3_t_4 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_y
         )
         rrrrs_acc_3_o_in_axes3_z = (
         rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
         )
+        # (rrrrs-f_3) inertia force of link 3 less its weight
+        rrrrs_f_3_t = rrrrs_omega_1_t*rrrrs_omega_1_t
+        rrrrs_f_3_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
+        rrrrs_f_3_t_3 = rrrrs_h_3_in_spec3_x*(rrrrs_bias_t_2 + rrrrs_f_3_t_2)
+        rrrrs_f_3_t_4 = rrrrs_h_3_in_spec3_y*(rrrrs_bias_t_2 + rrrrs_f_3_t)
+        rrrrs_f_3_t_5 = rrrrs_h_3_in_spec3_z*(rrrrs_f_3_t + rrrrs_f_3_t_2)
         # (rrrrs-f_3_o) remainder of: inertia force of link 3 less its weight
-        rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t
-        rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
         rrrrs_f_3_o_in_axes3_x = (
         rrrrs_B_3_o_in_axes3_xy*rrrrs_h_3_in_spec3_y +
             rrrrs_B_3_o_in_axes3_xz*rrrrs_h_3_in_spec3_z +
-            rrrrs_acc_3_o_in_axes3_x*rrrrs_link3_mass - rrrrs_h_3_in_spec3_x*(rrrrs_bias_t_2 +
-            rrrrs_f_3_o_t_2)
+            rrrrs_acc_3_o_in_axes3_x*rrrrs_link3_mass - rrrrs_f_3_t_3
         )
         rrrrs_f_3_o_in_axes3_y = (
         rrrrs_B_3_o_in_axes3_yx*rrrrs_h_3_in_spec3_x +
             rrrrs_B_3_o_in_axes3_yz*rrrrs_h_3_in_spec3_z +
-            rrrrs_acc_3_o_in_axes3_y*rrrrs_link3_mass - rrrrs_h_3_in_spec3_y*(rrrrs_bias_t_2 +
-            rrrrs_f_3_o_t)
+            rrrrs_acc_3_o_in_axes3_y*rrrrs_link3_mass - rrrrs_f_3_t_4
         )
         rrrrs_f_3_o_in_axes3_z = (
         rrrrs_B_3_o_in_axes3_zx*rrrrs_h_3_in_spec3_x +
             rrrrs_B_3_o_in_axes3_zy*rrrrs_h_3_in_spec3_y +
-            rrrrs_acc_3_o_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_o_t +
-            rrrrs_f_3_o_t_2)
+            rrrrs_acc_3_o_in_axes3_z*rrrrs_link3_mass - rrrrs_f_3_t_5
         )
-        # (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
-        rrrrs_acc_4_o_in_axes4_x = (
-        rrrrs_u_1_in_axes4_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
+        # (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity
+        rrrrs_g_in_axes4_x = (
+        axis_x_rrrrs_axes4_x*gravity_x + axis_x_rrrrs_axes4_y*gravity_y +
             axis_x_rrrrs_axes4_z*gravity_z
         )
-        rrrrs_acc_4_o_in_axes4_y = (
-        rrrrs_u_1_in_axes4_y - axis_y_rrrrs_axes4_x*gravity_x - axis_y_rrrrs_axes4_y*gravity_y -
+        rrrrs_g_in_axes4_y = (
+        axis_y_rrrrs_axes4_x*gravity_x + axis_y_rrrrs_axes4_y*gravity_y +
             axis_y_rrrrs_axes4_z*gravity_z
         )
-        rrrrs_acc_4_o_in_axes4_z = (
-        rrrrs_u_1_in_axes4_z - axis_z_rrrrs_axes4_x*gravity_x - axis_z_rrrrs_axes4_y*gravity_y -
+        rrrrs_g_in_axes4_z = (
+        axis_z_rrrrs_axes4_x*gravity_x + axis_z_rrrrs_axes4_y*gravity_y +
             axis_z_rrrrs_axes4_z*gravity_z
         )
+        # (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
+        rrrrs_acc_4_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_g_in_axes4_x
+        rrrrs_acc_4_o_in_axes4_y = rrrrs_u_1_in_axes4_y - rrrrs_g_in_axes4_y
+        rrrrs_acc_4_o_in_axes4_z = rrrrs_u_1_in_axes4_z - rrrrs_g_in_axes4_z
+        # (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        rrrrs_mu_4_t = rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2 - rrrrs_W_4_t)
+        rrrrs_mu_4_t_2 = rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t - rrrrs_W_4_t)
+        rrrrs_mu_4_t_3 = rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t - rrrrs_W_1_t_2)
         # (rrrrs-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their reference points
         rrrrs_mu_4_o_in_axes4_x = (
-        rrrrs_B_4_o_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
+        rrrrs_mu_4_t + rrrrs_B_4_o_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
             rrrrs_B_4_o_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy +
-            rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2 - rrrrs_W_4_t) +
             rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_y -
             rrrrs_B_4_o_in_axes4_yz*rrrrs_Sigma_4_in_axes4_zz -
             rrrrs_B_4_o_in_axes4_zx*rrrrs_J_4_in_spec4_xy -
@@ -5646,24 +5619,27 @@ def _run_Z(m, X, V):
         rrrrs_mu_4_o_in_axes4_y = (
         rrrrs_B_4_o_in_axes4_xz*rrrrs_Sigma_4_in_axes4_zz +
             rrrrs_B_4_o_in_axes4_zy*rrrrs_J_4_in_spec4_xy +
-            rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_z -
+            rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_z - rrrrs_mu_4_t_2 -
             rrrrs_B_4_o_in_axes4_xy*rrrrs_J_4_in_spec4_yz -
-            rrrrs_B_4_o_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx - rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t
-            - rrrrs_W_4_t) - rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_x
+            rrrrs_B_4_o_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx -
+            rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_x
         )
         rrrrs_mu_4_o_in_axes4_z = (
-        rrrrs_B_4_o_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
-            rrrrs_B_4_o_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx + rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t
-            - rrrrs_W_1_t_2) + rrrrs_acc_4_o_in_axes4_y*rrrrs_h_4_in_spec4_x -
+        rrrrs_mu_4_t_3 + rrrrs_B_4_o_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
+            rrrrs_B_4_o_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx +
+            rrrrs_acc_4_o_in_axes4_y*rrrrs_h_4_in_spec4_x -
             rrrrs_B_4_o_in_axes4_xy*rrrrs_Sigma_4_in_axes4_yy -
             rrrrs_B_4_o_in_axes4_yz*rrrrs_J_4_in_spec4_xz -
             rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_y
         )
+        # (rrrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrrs_mu_3_t = rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_t_2 - rrrrs_bias_t_2)
+        rrrrs_mu_3_t_2 = rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_t - rrrrs_bias_t_2)
+        rrrrs_mu_3_t_3 = rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_t - rrrrs_f_3_t_2)
         # (rrrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         rrrrs_mu_3_o_in_axes3_x = (
-        rrrrs_B_3_o_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
+        rrrrs_mu_3_t + rrrrs_B_3_o_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
             rrrrs_B_3_o_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy +
-            rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_o_t_2 - rrrrs_bias_t_2) +
             rrrrs_acc_3_o_in_axes3_z*rrrrs_h_3_in_spec3_y -
             rrrrs_B_3_o_in_axes3_yz*rrrrs_Sigma_3_in_axes3_zz -
             rrrrs_B_3_o_in_axes3_zx*rrrrs_J_3_in_spec3_xy -
@@ -5672,16 +5648,14 @@ def _run_Z(m, X, V):
         rrrrs_mu_3_o_in_axes3_y = (
         rrrrs_B_3_o_in_axes3_xz*rrrrs_Sigma_3_in_axes3_zz +
             rrrrs_B_3_o_in_axes3_zy*rrrrs_J_3_in_spec3_xy +
-            rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_z -
+            rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_z - rrrrs_mu_3_t_2 -
             rrrrs_B_3_o_in_axes3_xy*rrrrs_J_3_in_spec3_yz -
             rrrrs_B_3_o_in_axes3_zx*rrrrs_Sigma_3_in_axes3_xx -
-            rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_o_t - rrrrs_bias_t_2) -
             rrrrs_acc_3_o_in_axes3_z*rrrrs_h_3_in_spec3_x
         )
         rrrrs_mu_3_o_in_axes3_z = (
-        rrrrs_B_3_o_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
+        rrrrs_mu_3_t_3 + rrrrs_B_3_o_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
             rrrrs_B_3_o_in_axes3_yx*rrrrs_Sigma_3_in_axes3_xx +
-            rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_o_t - rrrrs_f_3_o_t_2) +
             rrrrs_acc_3_o_in_axes3_y*rrrrs_h_3_in_spec3_x -
             rrrrs_B_3_o_in_axes3_xy*rrrrs_Sigma_3_in_axes3_yy -
             rrrrs_B_3_o_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
@@ -5697,76 +5671,84 @@ def _run_Z(m, X, V):
             rrrrs_mu_4_o_in_axes4_x*rrrrs_s_4_t
         )
         rrrrs_N_3_o_in_axes3_z = rrrrs_mu_3_o_in_axes3_z + rrrrs_mu_4_o_in_axes4_z
+        # (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrrs_mu_2_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x
+        rrrrs_mu_2_t_2 = rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t - rrrrs_bias_t)
+        rrrrs_mu_2_t_3 = rrrrs_J_2_in_spec2_xz*(rrrrs_mu_2_t - rrrrs_bias_t)
+        rrrrs_mu_2_t_4 = rrrrs_J_2_in_spec2_xy*(rrrrs_mu_2_t - rrrrs_a_o_3_t)
+        rrrrs_mu_2_t_5 = (
+        rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_y - rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z
+        )
+        rrrrs_mu_2_t_6 = (
+        rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z - rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_x
+        )
+        rrrrs_mu_2_t_7 = (
+        rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x - rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y
+        )
         # (rrrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x
         rrrrs_mu_2_o_in_axes2_x = (
-        rrrrs_B_2_o_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy +
-            rrrrs_J_2_in_spec2_xz*rrrrs_W_2_in_axes2_xy + rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t -
-            rrrrs_bias_t) + rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_x +
-            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z -
-            rrrrs_B_2_o_in_axes2_zx*rrrrs_J_2_in_spec2_xy -
-            rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_y
+        rrrrs_mu_2_t_2 + rrrrs_B_2_o_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy +
+            rrrrs_J_2_in_spec2_xz*rrrrs_W_2_in_axes2_xy +
+            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_x - rrrrs_mu_2_t_5 -
+            rrrrs_B_2_o_in_axes2_zx*rrrrs_J_2_in_spec2_xy
         )
         rrrrs_mu_2_o_in_axes2_y = (
         rrrrs_B_2_o_in_axes2_zy*rrrrs_J_2_in_spec2_xy +
-            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_y +
-            rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_x -
-            rrrrs_B_2_o_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
-            rrrrs_J_2_in_spec2_xz*(rrrrs_mu_2_o_t - rrrrs_bias_t) -
-            rrrrs_J_2_in_spec2_yz*rrrrs_W_2_in_axes2_xy - rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z
+            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_y - rrrrs_mu_2_t_3 - rrrrs_mu_2_t_6
+            - rrrrs_B_2_o_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
+            rrrrs_J_2_in_spec2_yz*rrrrs_W_2_in_axes2_xy
         )
         rrrrs_mu_2_o_in_axes2_z = (
-        rrrrs_J_2_in_spec2_xy*(rrrrs_mu_2_o_t - rrrrs_a_o_3_t) +
-            rrrrs_J_2_in_spec2_xz*rrrrs_alpha_1_o_in_axes2_x +
+        rrrrs_mu_2_t_4 + rrrrs_J_2_in_spec2_xz*rrrrs_alpha_1_o_in_axes2_x +
             rrrrs_J_2_in_spec2_yz*rrrrs_alpha_1_o_in_axes2_y +
-            rrrrs_Sigma_2_in_axes2_xx*rrrrs_W_2_in_axes2_xy +
-            rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y -
-            rrrrs_Sigma_2_in_axes2_yy*rrrrs_W_2_in_axes2_xy -
-            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x
+            rrrrs_Sigma_2_in_axes2_xx*rrrrs_W_2_in_axes2_xy - rrrrs_mu_2_t_7 -
+            rrrrs_Sigma_2_in_axes2_yy*rrrrs_W_2_in_axes2_xy
         )
         # (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_o_in_axes2_x = (
-        rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_c_3 -
-            rrrrs_N_3_o_in_axes3_y*rrrrs_s_3
+        rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_26 -
+            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_27
         )
         rrrrs_N_2_o_in_axes2_y = (
-        rrrrs_mu_2_o_in_axes2_y + rrrrs_N_3_o_in_axes3_x*rrrrs_s_3 +
-            rrrrs_N_3_o_in_axes3_y*rrrrs_c_3 - rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x
+        rrrrs_mu_2_o_in_axes2_y + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_27 +
+            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_26 - rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x
         )
         rrrrs_N_2_o_in_axes2_z = (
         rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
-            rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_o_in_axes3_y +
-            rrrrs_f_3_o_in_axes3_x*rrrrs_s_3)
+            rrrrs_joint3_offset_x*(rrrrs_f_3_o_in_axes3_x*rrrrs_h_3_t_27 +
+            rrrrs_f_3_o_in_axes3_y*rrrrs_h_3_t_26)
+        )
+        # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrrrs_mu_1_t = (
+        rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y - rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z
         )
         # (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrrrs_mu_1_o_in_axes1_z = (
-        rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o + rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z -
-            rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y
-        )
+        rrrrs_mu_1_o_in_axes1_z = rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o - rrrrs_mu_1_t
         # (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrrs_N_1_o_in_axes1_z = (
-        rrrrs_mu_1_o_in_axes1_z + rrrrs_N_2_o_in_axes2_x*rrrrs_c_2 -
-            rrrrs_N_2_o_in_axes2_y*rrrrs_s_2
+        rrrrs_mu_1_o_in_axes1_z + rrrrs_N_2_o_in_axes2_x*rrrrs_h_3_t_6 -
+            rrrrs_N_2_o_in_axes2_y*rrrrs_h_3_t_7
         )
         # (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y
         rrrrs_G_o_in_axes4_x = (
         -rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_o_in_axes3_z)
         )
+        # (rrrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_c_t = rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x
+        rrrrs_c_t_2 = rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t)
+        rrrrs_c_t_3 = rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2)
         # (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrrs_c_o_in_axes4_x = (
-        rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x - rrrrs_G_o_in_axes4_x -
-            rrrrs_B_4_o_in_axes4_xy*rrrrs_h_4_in_spec4_y -
+        rrrrs_c_t - rrrrs_G_o_in_axes4_x - rrrrs_B_4_o_in_axes4_xy*rrrrs_h_4_in_spec4_y -
             rrrrs_B_4_o_in_axes4_xz*rrrrs_h_4_in_spec4_z
         )
         rrrrs_c_o_in_axes4_y = (
-        rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t) - rrrrs_G_o_in_axes4_y -
-            rrrrs_B_4_o_in_axes4_yx*rrrrs_h_4_in_spec4_x -
+        rrrrs_c_t_2 - rrrrs_G_o_in_axes4_y - rrrrs_B_4_o_in_axes4_yx*rrrrs_h_4_in_spec4_x -
             rrrrs_B_4_o_in_axes4_yz*rrrrs_h_4_in_spec4_z
         )
         rrrrs_c_o_in_axes4_z = (
-        rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2) -
-            rrrrs_B_4_o_in_axes4_zx*rrrrs_h_4_in_spec4_x -
+        rrrrs_c_t_3 - rrrrs_B_4_o_in_axes4_zx*rrrrs_h_4_in_spec4_x -
             rrrrs_B_4_o_in_axes4_zy*rrrrs_h_4_in_spec4_y -
             rrrrs_N_1_o_in_axes1_z*rrrrs_w_1_in_axes4_z
         )
@@ -5793,10 +5775,10 @@ def _run_Z(m, X, V):
         rrrrs_Z_a_t_2 = rrrrs_U_x*rrrrs_q_z - rrrrs_U_z*rrrrs_q_x
         rrrrs_Z_a_t_3 = rrrrs_U_y*rrrrs_q_x - rrrrs_U_x*rrrrs_q_y
         ok = (
-        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
-            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
-            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
-            _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
+            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
         # (Z_t) translational part of Z
         Z_t_rrrrs_x += rrrrs_U_x
@@ -5813,20 +5795,20 @@ def _run_Z(m, X, V):
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
             rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
-            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
+            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
             rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
             rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -5836,56 +5818,52 @@ def _run_Z(m, X, V):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
         rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
@@ -5900,40 +5878,33 @@ def _run_Z(m, X, V):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
         # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
-        # (rrrs-qd_1) rate of joint 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_qd_1 = (
-        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
-        )
-        # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_qd_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t +
-            rrrs_base_frame_xz*rrrs_qd_2_t_2
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
+            rrrs_base_frame_xz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t +
-            rrrs_base_frame_yz*rrrs_qd_2_t_2
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
+            rrrs_base_frame_yz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t +
-            rrrs_base_frame_zz*rrrs_qd_2_t_2
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
+            rrrs_base_frame_zz*rrrs_w_2_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -5944,25 +5915,32 @@ def _run_Z(m, X, V):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
-        rrrs_qd_2_t_3 = (
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        # (rrrs-qd_1) rate of joint 1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
+        rrrs_qd_2_t = (
         -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
             + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t_3*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
         rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
         rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t_3
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
         rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t_3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
@@ -5984,23 +5962,24 @@ def _run_Z(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_u_1_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t_3
+        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
         rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
         rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
+        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
         rrrs_bias_t_6 = (
         rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
@@ -6008,12 +5987,12 @@ def _run_Z(m, X, V):
         rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
         rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t_3 - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
             rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
         rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t_3 - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
         rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
@@ -6031,8 +6010,8 @@ def _run_Z(m, X, V):
         # (rrrs-qdd_2_o) remainder of: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder of: angular acceleration of link 1
-        rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
-        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
+        rrrs_alpha_1_o_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = rrrs_h_2_t_20*rrrs_qdd_1_o
         # (rrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
         rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
@@ -6043,7 +6022,7 @@ def _run_Z(m, X, V):
         rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x
         # (rrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrs_alpha_3_o_in_axes3_x = (
-        rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+        rrrs_zeta_3_in_axes3_x + rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 -
             rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t
         )
         rrrs_alpha_3_o_in_axes3_y = (
@@ -6060,27 +6039,34 @@ def _run_Z(m, X, V):
         rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x
         rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y
         rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x
-        # (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_o_in_axes3_x = (
-        rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrs_g_in_axes3_x = (
+        axis_x_rrrs_axes3_x*gravity_x + axis_x_rrrs_axes3_y*gravity_y +
             axis_x_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_in_axes3_y = (
-        rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_y = (
+        axis_y_rrrs_axes3_x*gravity_x + axis_y_rrrs_axes3_y*gravity_y +
             axis_y_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_in_axes3_z = (
-        rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_z = (
+        axis_z_rrrs_axes3_x*gravity_x + axis_z_rrrs_axes3_y*gravity_y +
             axis_z_rrrs_axes3_z*gravity_z
         )
+        # (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_g_in_axes3_x
+        rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_g_in_axes3_y
+        rrrs_acc_3_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_g_in_axes3_z
+        # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
+        rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
+        rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_t_4 = rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_5 = rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_6 = rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2)
         # (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
-        rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
-        rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
         rrrs_mu_3_o_in_axes3_x = (
-        rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+        rrrs_mu_3_t_4 + rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
             rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
-            rrrs_J_3_in_spec3_yz*(rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
             rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
             rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
             rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
@@ -6089,48 +6075,57 @@ def _run_Z(m, X, V):
         rrrs_mu_3_o_in_axes3_y = (
         rrrs_B_3_o_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
             rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
-            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z - rrrs_mu_3_t_5 -
             rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_o_t
-            - rrrs_mu_3_o_t_3) - rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x
+            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx -
+            rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x
         )
         rrrs_mu_3_o_in_axes3_z = (
-        rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
-            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_o_t
-            - rrrs_mu_3_o_t_2) + rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
+        rrrs_mu_3_t_6 + rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx +
+            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y
         )
-        # (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_o_t_2 = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_mu_2_o_t_3 = rrrs_qd_2_t_3*rrrs_qd_2_t_3
+        # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
+        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
-        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
+        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
+        rrrs_mu_2_t_9 = (
+        rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z
+        )
+        rrrs_mu_2_t_10 = (
+        rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z - rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x
+        )
+        rrrs_mu_2_t_11 = (
+        rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y
+        )
+        # (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_o_in_axes2_x = (
-        rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+        rrrs_mu_2_t_6 + rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
             rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
-            rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x +
-            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x - rrrs_mu_2_t_9 -
+            rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy
         )
         rrrs_mu_2_o_in_axes2_y = (
-        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy + rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x -
+        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy - rrrs_mu_2_t_10 - rrrs_mu_2_t_7 -
             rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
-            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
-            - rrrs_mu_2_o_t_3) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t -
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
+            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t
         )
         rrrs_mu_2_o_in_axes2_z = (
-        rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t -
-            rrrs_mu_2_o_t_2) + rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x +
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
+        rrrs_mu_2_t_8 + rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x - rrrs_mu_2_t_11 -
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
-            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
+            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t
         )
         # (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_o_in_axes2_x = (
@@ -6142,32 +6137,35 @@ def _run_Z(m, X, V):
             rrrs_mu_3_o_in_axes3_x*rrrs_s_3_t
         )
         rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z
-        # (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_o_in_axes1_z = (
-        rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
-            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
+        # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_t = (
+        rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z
         )
+        # (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
+        rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_mu_1_t
         # (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
-        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_h_2_t_19 -
+            rrrs_N_2_o_in_axes2_y*rrrs_h_2_t_20
         )
         # (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
+        # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_t = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3)
+        rrrs_c_t_2 = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3)
+        rrrs_c_t_3 = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2)
         # (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_o_in_axes3_x = (
-        rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
-            rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
-            - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
+        rrrs_c_t + rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x -
+            rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
             rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_o_in_axes3_y = (
-        rrrs_h_3_in_spec3_y*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
-            rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
+        rrrs_c_t_2 - rrrs_G_o_in_axes3_y - rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_o_in_axes3_z = (
-        rrrs_h_3_in_spec3_z*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_2) -
-            rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
+        rrrs_c_t_3 - rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y - rrrs_N_1_o_in_axes1_z*rrrs_w_1_in_axes3_z
         )
         # (rrrs-U) velocity and gravity terms of the leg force
@@ -6188,8 +6186,8 @@ def _run_Z(m, X, V):
         rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x
         rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -6274,7 +6272,7 @@ def _run_H(m, X):
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
-        # (rrrrs-S) from the base point to the connection point
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -6284,90 +6282,80 @@ def _run_H(m, X):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_S_in_turn1_x = (
-        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
-            rrrrs_S_z*rrrrs_base_frame_zy
+        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
+        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
+        rrrrs_h_3_t_8 = (
+        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zy*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_y = (
-        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
-            rrrrs_S_z*rrrrs_base_frame_zz
+        rrrrs_h_3_t_9 = (
+        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zz*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_z = (
-        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
-            rrrrs_S_z*rrrrs_base_frame_zx
+        rrrrs_h_3_t_10 = (
+        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zx*rrrrs_h_3_t_5
         )
-        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrrs_s_2 = sin(rrrrs_y_2_extra)
-        # (rrrrs-rho2_1) squared amplitude
-        rrrrs_rho2_1 = (
-        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
+        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
+        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
+        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
+        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
+        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
+        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
+        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
+        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
         )
-        # (rrrrs-root_1) root, with the sign of the branch
-        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        rrrrs_h_3_t_27 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
+        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
+        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
-        # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_in_axes2_x = rrrrs_x_2_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z
-        rrrrs_x_2_t_2 = rrrrs_c_2*rrrrs_root_1
-        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 - rrrrs_s_2*rrrrs_x_2_in_axes1_z
-        # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
-        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t = (
-        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
-        )
-        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
-        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
-        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
-        # (rrrrs-rho2_3) squared amplitude
-        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
-        # (rrrrs-disc_3) discriminant
-        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
-        # (rrrrs-root_3) root, with the sign of the branch
-        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
-        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
-        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
         rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
-        rrrrs_r_3_in_axes4_y = (
-        rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_platform_joint_offset_x*rrrrs_s_4_t
-        )
+        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
+        # (rrrrs-r_2) from joint 2 to the connection point, along the links
+        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
+        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
-        rrrrs_v_1_t_3 = rrrrs_x_2_t + rrrrs_S_in_turn1_z*rrrrs_c_2
-        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 - rrrrs_S_in_turn1_z*rrrrs_s_2
-        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
+        rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
+        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
-        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
-            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
-            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
+            rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
         )
         # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_x = rrrrs_base_frame_xz*rrrrs_c_1 - rrrrs_base_frame_xy*rrrrs_s_1
@@ -6378,10 +6366,10 @@ def _run_H(m, X):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
-        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
-        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
-        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
+        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
         rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
@@ -6396,24 +6384,20 @@ def _run_H(m, X):
         rrrrs_base_frame_zx*rrrrs_w_3_t_3 + rrrrs_base_frame_zy*rrrrs_w_3_t_5 +
             rrrrs_base_frame_zz*rrrrs_w_3_t_6
         )
+        axis_x_rrrrs_axes4_x = (
+        axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
+        )
+        axis_x_rrrrs_axes4_y = (
+        axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x - axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z
+        )
+        axis_x_rrrrs_axes4_z = (
+        axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
+        )
         rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
-        rrrrs_w_3_t_7 = (
-        rrrrs_w_3_in_axes4_x*(rrrrs_c_4*(rrrrs_c_3*rrrrs_x_2_in_axes2_y -
-            rrrrs_s_3*rrrrs_x_2_in_axes2_x) + rrrrs_s_4_t*(rrrrs_c_3*rrrrs_x_2_in_axes2_x +
-            rrrrs_s_3*rrrrs_x_2_in_axes2_y))
-        )
-        rrrrs_w_3_x = (
-        rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z -
-            axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y)
-        )
-        rrrrs_w_3_y = (
-        rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x -
-            axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z)
-        )
-        rrrrs_w_3_z = (
-        rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y -
-            axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x)
-        )
+        rrrrs_w_3_t_7 = rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_x = axis_x_rrrrs_axes4_x*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_y = axis_x_rrrrs_axes4_y*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_z = axis_x_rrrrs_axes4_z*rrrrs_w_3_in_axes4_x
         # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
         rrrrs_H_a_1_x = rrrrs_q_y*rrrrs_w_1_z - rrrrs_q_z*rrrrs_w_1_y
         rrrrs_H_a_1_y = rrrrs_q_z*rrrrs_w_1_x - rrrrs_q_x*rrrrs_w_1_z
@@ -6423,10 +6407,10 @@ def _run_H(m, X):
         rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z
         rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
         ok = (
-        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
-            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
-            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
-            _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
+            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
         # (rrrrs-w_1) reciprocal vector 1
         out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_x
@@ -6450,15 +6434,15 @@ def _run_H(m, X):
         out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
     for leg, k in legs[1]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
+            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -6468,67 +6452,62 @@ def _run_H(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_y = (
-        rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t
-        )
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -6556,19 +6535,19 @@ def _run_H(m, X):
         rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
             rrrs_base_frame_zz*rrrs_w_2_t_2
         )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
-        rrrs_w_2_x = (
-        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y)
-        )
-        rrrs_w_2_y = (
-        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z)
-        )
-        rrrs_w_2_z = (
-        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x)
-        )
+        rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
+        rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
+        rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x
         # (rrrs-H_a_1) moment of the column's unit force about the platform origin
         rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y
         rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z
@@ -6578,8 +6557,8 @@ def _run_H(m, X):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -6602,7 +6581,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1145 mul, 858 add, 12 div, 6 sqrt, 2 trig
+# required: 1139 mul, 852 add, 12 div, 6 sqrt, 2 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -6678,9 +6657,22 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -6693,21 +6685,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
-        f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
-        f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
-        f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*m_star - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -6774,7 +6754,7 @@ def _run_required(m, X, V, A):
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
         rrrrs_ydd_2 = A[[6][leg]]
-        # (rrrrs-S) from the base point to the connection point
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -6784,73 +6764,59 @@ def _run_required(m, X, V, A):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_S_in_turn1_x = (
-        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
-            rrrrs_S_z*rrrrs_base_frame_zy
+        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
+        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
+        rrrrs_h_3_t_8 = (
+        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zy*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_y = (
-        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
-            rrrrs_S_z*rrrrs_base_frame_zz
+        rrrrs_h_3_t_9 = (
+        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zz*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_z = (
-        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
-            rrrrs_S_z*rrrrs_base_frame_zx
+        rrrrs_h_3_t_10 = (
+        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zx*rrrrs_h_3_t_5
         )
-        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrrs_s_2 = sin(rrrrs_y_2_extra)
-        # (rrrrs-rho2_1) squared amplitude
-        rrrrs_rho2_1 = (
-        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
+        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
+        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
+        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
+        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
+        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
+        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
+        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
+        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
         )
-        # (rrrrs-root_1) root, with the sign of the branch
-        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        rrrrs_h_3_t_27 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
+        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
+        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
-        # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_in_axes2_x = rrrrs_x_2_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z
-        rrrrs_x_2_t_2 = rrrrs_c_2*rrrrs_root_1
-        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 - rrrrs_s_2*rrrrs_x_2_in_axes1_z
-        # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
-        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t = (
-        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
-        )
-        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
-        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
-        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
-        # (rrrrs-rho2_3) squared amplitude
-        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
-        # (rrrrs-disc_3) discriminant
-        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
-        # (rrrrs-root_3) root, with the sign of the branch
-        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
-        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
-        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -6865,21 +6831,22 @@ def _run_required(m, X, V, A):
         rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
         rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_c_3*rrrrs_x_2_in_axes2_x + rrrrs_s_3*rrrrs_x_2_in_axes2_y
-        rrrrs_r_2_t_2 = rrrrs_c_3*rrrrs_x_2_in_axes2_y - rrrrs_s_3*rrrrs_x_2_in_axes2_x
+        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
         rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
         rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
-        rrrrs_v_1_t_3 = rrrrs_x_2_t + rrrrs_S_in_turn1_z*rrrrs_c_2
-        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 - rrrrs_S_in_turn1_z*rrrrs_s_2
-        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
+        rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
+        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
-        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
-            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
-            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
+            rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
         )
         # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_x = rrrrs_base_frame_xz*rrrrs_c_1 - rrrrs_base_frame_xy*rrrrs_s_1
@@ -6890,10 +6857,10 @@ def _run_required(m, X, V, A):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
-        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
-        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
-        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
+        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
         rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
@@ -6952,11 +6919,13 @@ def _run_required(m, X, V, A):
             rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_in_axes2_x = rrrrs_c_2*rrrrs_qd_1
-        rrrrs_omega_1_in_axes2_y = -rrrrs_qd_1*rrrrs_s_2
-        rrrrs_omega_1_t = rrrrs_c_3*rrrrs_omega_1_in_axes2_x + rrrrs_omega_1_in_axes2_y*rrrrs_s_3
+        rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
+        rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
+        rrrrs_omega_1_t = (
+        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_y
+        )
         rrrrs_omega_1_t_2 = (
-        rrrrs_c_3*rrrrs_omega_1_in_axes2_y - rrrrs_omega_1_in_axes2_x*rrrrs_s_3
+        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_x
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -6981,14 +6950,18 @@ def _run_required(m, X, V, A):
         rrrrs_W_4_t_2 = rrrrs_W_1_t_2 + rrrrs_W_4_t
         rrrrs_W_4_in_axes4_xz = rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z
         rrrrs_W_4_in_axes4_yz = rrrrs_omega_1_in_axes4_y*rrrrs_omega_4_in_axes4_z
+        # (rrrrs-u_1) centripetal acceleration of the connection point
+        rrrrs_u_1_x = omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
+        rrrrs_u_1_y = omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
+        rrrrs_u_1_z = omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
         # (rrrrs-a_p) acceleration of the connection point without its centripetal part
         rrrrs_a_p_x = t_ddot_x + alpha_y*rrrrs_q_z - alpha_z*rrrrs_q_y
         rrrrs_a_p_y = t_ddot_y + alpha_z*rrrrs_q_x - alpha_x*rrrrs_q_z
         rrrrs_a_p_z = t_ddot_z + alpha_x*rrrrs_q_y - alpha_y*rrrrs_q_x
         # (rrrrs-S_ddot) acceleration of the connection point
-        rrrrs_S_ddot_x = rrrrs_a_p_x + omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
-        rrrrs_S_ddot_y = rrrrs_a_p_y + omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
-        rrrrs_S_ddot_z = rrrrs_a_p_z + omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
+        rrrrs_S_ddot_x = rrrrs_a_p_x + rrrrs_u_1_x
+        rrrrs_S_ddot_y = rrrrs_a_p_y + rrrrs_u_1_y
+        rrrrs_S_ddot_z = rrrrs_a_p_z + rrrrs_u_1_z
         rrrrs_S_ddot_in_axes4_x = (
         axis_x_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_x_rrrrs_axes4_y*rrrrs_S_ddot_y +
             axis_x_rrrrs_axes4_z*rrrrs_S_ddot_z
@@ -7006,31 +6979,32 @@ def _run_required(m, X, V, A):
         rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_c_3 -
-            rrrrs_W_2_in_axes2_xz*rrrrs_s_3
+        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_27
         )
         rrrrs_beta_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_c_3 -
-            rrrrs_W_2_in_axes2_yz*rrrrs_s_3
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_27
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
         )
         # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        rrrrs_zeta_4_in_axes4_x = rrrrs_omega_1_in_axes4_y*rrrrs_qd_4
         rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*rrrrs_qd_4
         # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
         rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
         # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_in_axes2_x = rrrrs_c_2*rrrrs_joint2_offset_x
-        rrrrs_d_2_in_axes2_y = -rrrrs_joint2_offset_x*rrrrs_s_2
+        rrrrs_d_2_in_axes2_x = rrrrs_h_3_t_6*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x + rrrrs_d_2_in_axes2_y*rrrrs_s_3
-        rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y - rrrrs_d_2_in_axes2_x*rrrrs_s_3
+        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_27
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
-        rrrrs_bias_t_5 = rrrrs_c_3*rrrrs_joint3_offset_x
-        rrrrs_bias_t_6 = rrrrs_joint3_offset_x*rrrrs_s_3
+        rrrrs_bias_t_5 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_bias_t_6 = rrrrs_h_3_t_27*rrrrs_joint3_offset_x
         rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
         rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
         rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
@@ -7069,9 +7043,13 @@ def _run_required(m, X, V, A):
         rrrrs_qdd_1 = rrrrs_rel_in_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-qdd_3) acceleration of joint 3
         rrrrs_qdd_3 = rrrrs_rel_in_axes4_x*rrrrs_w_3_in_axes4_x
+        # (rrrrs-qdd_4) acceleration of joint 4
+        rrrrs_qdd_4 = (
+        rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y - rrrrs_qdd_3*rrrrs_r_3_in_axes4_x)
+        )
         # (rrrrs-alpha_1) angular acceleration of link 1
-        rrrrs_alpha_1_in_axes2_x = rrrrs_c_2*rrrrs_qdd_1
-        rrrrs_alpha_1_in_axes2_y = -rrrrs_qdd_1*rrrrs_s_2
+        rrrrs_alpha_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qdd_1
+        rrrrs_alpha_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qdd_1
         # (rrrrs-alpha_2) angular acceleration of link 2
         rrrrs_alpha_2_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_in_axes2_x
         rrrrs_alpha_2_in_axes2_y = rrrrs_alpha_1_in_axes2_y - rrrrs_W_2_in_axes2_xz
@@ -7082,12 +7060,12 @@ def _run_required(m, X, V, A):
         rrrrs_B_2_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x
         # (rrrrs-alpha_3) angular acceleration of link 3
         rrrrs_alpha_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_in_axes2_x*rrrrs_c_3 +
-            rrrrs_alpha_2_in_axes2_y*rrrrs_s_3
+        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_26 +
+            rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_27
         )
         rrrrs_alpha_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_c_3 -
-            rrrrs_alpha_2_in_axes2_x*rrrrs_s_3
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_26 -
+            rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_27
         )
         rrrrs_alpha_3_in_axes3_z = rrrrs_qdd_3 + rrrrs_ydd_2
         # (rrrrs-B_3) acceleration tensor of link 3
@@ -7099,16 +7077,13 @@ def _run_required(m, X, V, A):
         rrrrs_B_3_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_in_axes3_x
         # (rrrrs-alpha_4) angular acceleration of link 4
         rrrrs_alpha_4_in_axes4_x = (
-        rrrrs_alpha_3_in_axes3_x*rrrrs_c_4 + rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 -
+        rrrrs_zeta_4_in_axes4_x + rrrrs_alpha_3_in_axes3_x*rrrrs_c_4 -
             rrrrs_alpha_3_in_axes3_y*rrrrs_s_4_t
         )
         rrrrs_alpha_4_in_axes4_y = (
         rrrrs_alpha_3_in_axes3_x*rrrrs_s_4_t + rrrrs_alpha_3_in_axes3_y*rrrrs_c_4 - rrrrs_zeta_4_t
         )
-        rrrrs_alpha_4_in_axes4_z = (
-        rrrrs_alpha_3_in_axes3_z + rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y -
-            rrrrs_qdd_3*rrrrs_r_3_in_axes4_x)
-        )
+        rrrrs_alpha_4_in_axes4_z = rrrrs_alpha_3_in_axes3_z + rrrrs_qdd_4
         # (rrrrs-B_4) acceleration tensor of link 4
         rrrrs_B_4_in_axes4_xy = rrrrs_W_1_in_axes4_xy - rrrrs_alpha_4_in_axes4_z
         rrrrs_B_4_in_axes4_xz = rrrrs_W_4_in_axes4_xz + rrrrs_alpha_4_in_axes4_y
@@ -7121,55 +7096,63 @@ def _run_required(m, X, V, A):
         rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
         rrrrs_a_o_3_in_axes2_y = rrrrs_B_2_in_axes2_yx*rrrrs_joint3_offset_x
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_27
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
-        rrrrs_g_in_axes2_x = rrrrs_c_2*rrrrs_g_in_axes1_z + rrrrs_g_in_axes1_x*rrrrs_s_2
-        rrrrs_g_in_axes2_y = rrrrs_c_2*rrrrs_g_in_axes1_x - rrrrs_g_in_axes1_z*rrrrs_s_2
+        rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*rrrrs_h_3_t_7 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_6
+        rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*rrrrs_h_3_t_6 - rrrrs_g_in_axes1_z*rrrrs_h_3_t_7
+        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_27
         rrrrs_acc_3_in_axes3_x = (
-        rrrrs_a_o_3_in_axes2_x*rrrrs_c_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_s_3 -
-            rrrrs_c_3*rrrrs_g_in_axes2_x - rrrrs_g_in_axes2_y*rrrrs_s_3
+        rrrrs_acc_3_t_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_27 - rrrrs_g_in_axes3_x
         )
         rrrrs_acc_3_in_axes3_y = (
-        rrrrs_a_o_3_in_axes2_y*rrrrs_c_3 + rrrrs_g_in_axes2_x*rrrrs_s_3 -
-            rrrrs_a_o_3_in_axes2_x*rrrrs_s_3 - rrrrs_c_3*rrrrs_g_in_axes2_y
+        rrrrs_acc_3_t_4 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_y
         )
         rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
         # (rrrrs-f_3) inertia force of link 3 less its weight
         rrrrs_f_3_t = rrrrs_omega_1_t*rrrrs_omega_1_t
         rrrrs_f_3_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
+        rrrrs_f_3_t_3 = rrrrs_h_3_in_spec3_x*(rrrrs_bias_t_2 + rrrrs_f_3_t_2)
+        rrrrs_f_3_t_4 = rrrrs_h_3_in_spec3_y*(rrrrs_bias_t_2 + rrrrs_f_3_t)
+        rrrrs_f_3_t_5 = rrrrs_h_3_in_spec3_z*(rrrrs_f_3_t + rrrrs_f_3_t_2)
         rrrrs_f_3_in_axes3_x = (
         rrrrs_B_3_in_axes3_xy*rrrrs_h_3_in_spec3_y + rrrrs_B_3_in_axes3_xz*rrrrs_h_3_in_spec3_z +
-            rrrrs_acc_3_in_axes3_x*rrrrs_link3_mass - rrrrs_h_3_in_spec3_x*(rrrrs_bias_t_2 +
-            rrrrs_f_3_t_2)
+            rrrrs_acc_3_in_axes3_x*rrrrs_link3_mass - rrrrs_f_3_t_3
         )
         rrrrs_f_3_in_axes3_y = (
         rrrrs_B_3_in_axes3_yx*rrrrs_h_3_in_spec3_x + rrrrs_B_3_in_axes3_yz*rrrrs_h_3_in_spec3_z +
-            rrrrs_acc_3_in_axes3_y*rrrrs_link3_mass - rrrrs_h_3_in_spec3_y*(rrrrs_bias_t_2 +
-            rrrrs_f_3_t)
+            rrrrs_acc_3_in_axes3_y*rrrrs_link3_mass - rrrrs_f_3_t_4
         )
         rrrrs_f_3_in_axes3_z = (
         rrrrs_B_3_in_axes3_zx*rrrrs_h_3_in_spec3_x + rrrrs_B_3_in_axes3_zy*rrrrs_h_3_in_spec3_y +
-            rrrrs_acc_3_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_t +
-            rrrrs_f_3_t_2)
+            rrrrs_acc_3_in_axes3_z*rrrrs_link3_mass - rrrrs_f_3_t_5
         )
         # (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity
-        rrrrs_acc_4_in_axes4_x = (
-        rrrrs_S_ddot_in_axes4_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y
-            - axis_x_rrrrs_axes4_z*gravity_z
+        rrrrs_g_in_axes4_x = (
+        axis_x_rrrrs_axes4_x*gravity_x + axis_x_rrrrs_axes4_y*gravity_y +
+            axis_x_rrrrs_axes4_z*gravity_z
         )
-        rrrrs_acc_4_in_axes4_y = (
-        rrrrs_S_ddot_in_axes4_y - axis_y_rrrrs_axes4_x*gravity_x - axis_y_rrrrs_axes4_y*gravity_y
-            - axis_y_rrrrs_axes4_z*gravity_z
+        rrrrs_g_in_axes4_y = (
+        axis_y_rrrrs_axes4_x*gravity_x + axis_y_rrrrs_axes4_y*gravity_y +
+            axis_y_rrrrs_axes4_z*gravity_z
         )
-        rrrrs_acc_4_in_axes4_z = (
-        rrrrs_S_ddot_in_axes4_z - axis_z_rrrrs_axes4_x*gravity_x - axis_z_rrrrs_axes4_y*gravity_y
-            - axis_z_rrrrs_axes4_z*gravity_z
+        rrrrs_g_in_axes4_z = (
+        axis_z_rrrrs_axes4_x*gravity_x + axis_z_rrrrs_axes4_y*gravity_y +
+            axis_z_rrrrs_axes4_z*gravity_z
         )
+        rrrrs_acc_4_in_axes4_x = rrrrs_S_ddot_in_axes4_x - rrrrs_g_in_axes4_x
+        rrrrs_acc_4_in_axes4_y = rrrrs_S_ddot_in_axes4_y - rrrrs_g_in_axes4_y
+        rrrrs_acc_4_in_axes4_z = rrrrs_S_ddot_in_axes4_z - rrrrs_g_in_axes4_z
         # (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        rrrrs_mu_4_t = rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2 - rrrrs_W_4_t)
+        rrrrs_mu_4_t_2 = rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t - rrrrs_W_4_t)
+        rrrrs_mu_4_t_3 = rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t - rrrrs_W_1_t_2)
         rrrrs_mu_4_in_axes4_x = (
-        rrrrs_B_4_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
-            rrrrs_B_4_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy + rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2
-            - rrrrs_W_4_t) + rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_y -
+        rrrrs_mu_4_t + rrrrs_B_4_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
+            rrrrs_B_4_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy +
+            rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_y -
             rrrrs_B_4_in_axes4_yz*rrrrs_Sigma_4_in_axes4_zz -
             rrrrs_B_4_in_axes4_zx*rrrrs_J_4_in_spec4_xy -
             rrrrs_acc_4_in_axes4_y*rrrrs_h_4_in_spec4_z
@@ -7177,24 +7160,27 @@ def _run_required(m, X, V, A):
         rrrrs_mu_4_in_axes4_y = (
         rrrrs_B_4_in_axes4_xz*rrrrs_Sigma_4_in_axes4_zz +
             rrrrs_B_4_in_axes4_zy*rrrrs_J_4_in_spec4_xy +
-            rrrrs_acc_4_in_axes4_x*rrrrs_h_4_in_spec4_z -
+            rrrrs_acc_4_in_axes4_x*rrrrs_h_4_in_spec4_z - rrrrs_mu_4_t_2 -
             rrrrs_B_4_in_axes4_xy*rrrrs_J_4_in_spec4_yz -
-            rrrrs_B_4_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx - rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t -
-            rrrrs_W_4_t) - rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_x
+            rrrrs_B_4_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx -
+            rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_x
         )
         rrrrs_mu_4_in_axes4_z = (
-        rrrrs_B_4_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
-            rrrrs_B_4_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx + rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t -
-            rrrrs_W_1_t_2) + rrrrs_acc_4_in_axes4_y*rrrrs_h_4_in_spec4_x -
+        rrrrs_mu_4_t_3 + rrrrs_B_4_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
+            rrrrs_B_4_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx +
+            rrrrs_acc_4_in_axes4_y*rrrrs_h_4_in_spec4_x -
             rrrrs_B_4_in_axes4_xy*rrrrs_Sigma_4_in_axes4_yy -
             rrrrs_B_4_in_axes4_yz*rrrrs_J_4_in_spec4_xz -
             rrrrs_acc_4_in_axes4_x*rrrrs_h_4_in_spec4_y
         )
         # (rrrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrrs_mu_3_t = rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_t_2 - rrrrs_bias_t_2)
+        rrrrs_mu_3_t_2 = rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_t - rrrrs_bias_t_2)
+        rrrrs_mu_3_t_3 = rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_t - rrrrs_f_3_t_2)
         rrrrs_mu_3_in_axes3_x = (
-        rrrrs_B_3_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
-            rrrrs_B_3_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy + rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_t_2
-            - rrrrs_bias_t_2) + rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_y -
+        rrrrs_mu_3_t + rrrrs_B_3_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
+            rrrrs_B_3_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy +
+            rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_y -
             rrrrs_B_3_in_axes3_yz*rrrrs_Sigma_3_in_axes3_zz -
             rrrrs_B_3_in_axes3_zx*rrrrs_J_3_in_spec3_xy -
             rrrrs_acc_3_in_axes3_y*rrrrs_h_3_in_spec3_z
@@ -7202,15 +7188,15 @@ def _run_required(m, X, V, A):
         rrrrs_mu_3_in_axes3_y = (
         rrrrs_B_3_in_axes3_xz*rrrrs_Sigma_3_in_axes3_zz +
             rrrrs_B_3_in_axes3_zy*rrrrs_J_3_in_spec3_xy +
-            rrrrs_acc_3_in_axes3_x*rrrrs_h_3_in_spec3_z -
+            rrrrs_acc_3_in_axes3_x*rrrrs_h_3_in_spec3_z - rrrrs_mu_3_t_2 -
             rrrrs_B_3_in_axes3_xy*rrrrs_J_3_in_spec3_yz -
-            rrrrs_B_3_in_axes3_zx*rrrrs_Sigma_3_in_axes3_xx - rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_t -
-            rrrrs_bias_t_2) - rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_x
+            rrrrs_B_3_in_axes3_zx*rrrrs_Sigma_3_in_axes3_xx -
+            rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_x
         )
         rrrrs_mu_3_in_axes3_z = (
-        rrrrs_B_3_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
-            rrrrs_B_3_in_axes3_yx*rrrrs_Sigma_3_in_axes3_xx + rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_t -
-            rrrrs_f_3_t_2) + rrrrs_acc_3_in_axes3_y*rrrrs_h_3_in_spec3_x -
+        rrrrs_mu_3_t_3 + rrrrs_B_3_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
+            rrrrs_B_3_in_axes3_yx*rrrrs_Sigma_3_in_axes3_xx +
+            rrrrs_acc_3_in_axes3_y*rrrrs_h_3_in_spec3_x -
             rrrrs_B_3_in_axes3_xy*rrrrs_Sigma_3_in_axes3_yy -
             rrrrs_B_3_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
             rrrrs_acc_3_in_axes3_x*rrrrs_h_3_in_spec3_y
@@ -7227,50 +7213,59 @@ def _run_required(m, X, V, A):
         rrrrs_N_3_in_axes3_z = rrrrs_mu_3_in_axes3_z + rrrrs_mu_4_in_axes4_z
         # (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrrs_mu_2_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x
+        rrrrs_mu_2_t_2 = rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t - rrrrs_bias_t)
+        rrrrs_mu_2_t_3 = rrrrs_J_2_in_spec2_xz*(rrrrs_mu_2_t - rrrrs_bias_t)
+        rrrrs_mu_2_t_4 = rrrrs_J_2_in_spec2_xy*(rrrrs_mu_2_t - rrrrs_a_o_3_t)
+        rrrrs_mu_2_t_5 = (
+        rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_y - rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z
+        )
+        rrrrs_mu_2_t_6 = (
+        rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z - rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_x
+        )
+        rrrrs_mu_2_t_7 = (
+        rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x - rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y
+        )
         rrrrs_mu_2_in_axes2_x = (
-        rrrrs_B_2_in_axes2_yx*rrrrs_J_2_in_spec2_xz +
-            rrrrs_B_2_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy + rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t
-            - rrrrs_bias_t) + rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_in_axes2_x +
-            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z - rrrrs_B_2_in_axes2_zx*rrrrs_J_2_in_spec2_xy
-            - rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_y
+        rrrrs_mu_2_t_2 + rrrrs_B_2_in_axes2_yx*rrrrs_J_2_in_spec2_xz +
+            rrrrs_B_2_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy +
+            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_in_axes2_x - rrrrs_mu_2_t_5 -
+            rrrrs_B_2_in_axes2_zx*rrrrs_J_2_in_spec2_xy
         )
         rrrrs_mu_2_in_axes2_y = (
         rrrrs_B_2_in_axes2_zy*rrrrs_J_2_in_spec2_xy +
-            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_in_axes2_y +
-            rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_x - rrrrs_B_2_in_axes2_xy*rrrrs_J_2_in_spec2_yz
-            - rrrrs_B_2_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
-            rrrrs_J_2_in_spec2_xz*(rrrrs_mu_2_t - rrrrs_bias_t) -
-            rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z
+            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_in_axes2_y - rrrrs_mu_2_t_3 - rrrrs_mu_2_t_6 -
+            rrrrs_B_2_in_axes2_xy*rrrrs_J_2_in_spec2_yz -
+            rrrrs_B_2_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx
         )
         rrrrs_mu_2_in_axes2_z = (
-        rrrrs_B_2_in_axes2_yx*rrrrs_Sigma_2_in_axes2_xx + rrrrs_J_2_in_spec2_xy*(rrrrs_mu_2_t -
-            rrrrs_a_o_3_t) + rrrrs_J_2_in_spec2_xz*rrrrs_alpha_1_in_axes2_x +
-            rrrrs_J_2_in_spec2_yz*rrrrs_alpha_1_in_axes2_y +
-            rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y -
-            rrrrs_B_2_in_axes2_xy*rrrrs_Sigma_2_in_axes2_yy -
-            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x
+        rrrrs_mu_2_t_4 + rrrrs_B_2_in_axes2_yx*rrrrs_Sigma_2_in_axes2_xx +
+            rrrrs_J_2_in_spec2_xz*rrrrs_alpha_1_in_axes2_x +
+            rrrrs_J_2_in_spec2_yz*rrrrs_alpha_1_in_axes2_y - rrrrs_mu_2_t_7 -
+            rrrrs_B_2_in_axes2_xy*rrrrs_Sigma_2_in_axes2_yy
         )
         # (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_in_axes2_x = (
-        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_c_3 - rrrrs_N_3_in_axes3_y*rrrrs_s_3
+        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_26 -
+            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_27
         )
         rrrrs_N_2_in_axes2_y = (
-        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_s_3 + rrrrs_N_3_in_axes3_y*rrrrs_c_3 -
-            rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
+        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_27 +
+            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_26 - rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
         )
         rrrrs_N_2_in_axes2_z = (
         rrrrs_N_3_in_axes3_z + rrrrs_mu_2_in_axes2_z +
-            rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_in_axes3_y +
-            rrrrs_f_3_in_axes3_x*rrrrs_s_3)
+            rrrrs_joint3_offset_x*(rrrrs_f_3_in_axes3_x*rrrrs_h_3_t_27 +
+            rrrrs_f_3_in_axes3_y*rrrrs_h_3_t_26)
         )
         # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrrrs_mu_1_in_axes1_z = (
-        rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1 + rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z -
-            rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y
+        rrrrs_mu_1_t = (
+        rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y - rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z
         )
+        rrrrs_mu_1_in_axes1_z = rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1 - rrrrs_mu_1_t
         # (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrrs_N_1_in_axes1_z = (
-        rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_c_2 - rrrrs_N_2_in_axes2_y*rrrrs_s_2
+        rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_h_3_t_6 -
+            rrrrs_N_2_in_axes2_y*rrrrs_h_3_t_7
         )
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*rrrrs_w_4_in_axes4_y
@@ -7278,19 +7273,19 @@ def _run_required(m, X, V, A):
         -rrrrs_w_3_in_axes4_x*(rrrrs_G_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_in_axes3_z)
         )
         # (rrrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_c_t = rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x
+        rrrrs_c_t_2 = rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t)
+        rrrrs_c_t_3 = rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2)
         rrrrs_c_in_axes4_x = (
-        rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x - rrrrs_G_in_axes4_x -
-            rrrrs_B_4_in_axes4_xy*rrrrs_h_4_in_spec4_y -
+        rrrrs_c_t - rrrrs_G_in_axes4_x - rrrrs_B_4_in_axes4_xy*rrrrs_h_4_in_spec4_y -
             rrrrs_B_4_in_axes4_xz*rrrrs_h_4_in_spec4_z
         )
         rrrrs_c_in_axes4_y = (
-        rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t) - rrrrs_G_in_axes4_y -
-            rrrrs_B_4_in_axes4_yx*rrrrs_h_4_in_spec4_x -
+        rrrrs_c_t_2 - rrrrs_G_in_axes4_y - rrrrs_B_4_in_axes4_yx*rrrrs_h_4_in_spec4_x -
             rrrrs_B_4_in_axes4_yz*rrrrs_h_4_in_spec4_z
         )
         rrrrs_c_in_axes4_z = (
-        rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2) -
-            rrrrs_B_4_in_axes4_zx*rrrrs_h_4_in_spec4_x -
+        rrrrs_c_t_3 - rrrrs_B_4_in_axes4_zx*rrrrs_h_4_in_spec4_x -
             rrrrs_B_4_in_axes4_zy*rrrrs_h_4_in_spec4_y - rrrrs_N_1_in_axes1_z*rrrrs_w_1_in_axes4_z
         )
         rrrrs_c_x = (
@@ -7323,10 +7318,10 @@ def _run_required(m, X, V, A):
         rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z
         rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
         ok = (
-        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
-            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
-            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
-            _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
+            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += rrrrs_c_x
@@ -7363,20 +7358,20 @@ def _run_required(m, X, V, A):
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
             rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
-            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
+            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
             rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
             rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -7386,56 +7381,52 @@ def _run_required(m, X, V, A):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
         rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
@@ -7450,10 +7441,10 @@ def _run_required(m, X, V, A):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -7510,8 +7501,8 @@ def _run_required(m, X, V, A):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
         rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
         rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
@@ -7523,14 +7514,10 @@ def _run_required(m, X, V, A):
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
         rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
-        # (rrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y
-        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z
-        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x
         # (rrrs-S_ddot) acceleration of the connection point
-        rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
-        rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
-        rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_S_ddot_x = t_ddot_x + B_p_xy*rrrs_q_y + B_p_xz*rrrs_q_z - W_p_t_4*rrrs_q_x
+        rrrs_S_ddot_y = t_ddot_y + B_p_yx*rrrs_q_x + B_p_yz*rrrs_q_z - W_p_t_5*rrrs_q_y
+        rrrs_S_ddot_z = t_ddot_z + B_p_zx*rrrs_q_x + B_p_zy*rrrs_q_y - W_p_t_6*rrrs_q_z
         rrrs_S_ddot_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
             axis_x_rrrs_axes3_z*rrrs_S_ddot_z
@@ -7547,12 +7534,13 @@ def _run_required(m, X, V, A):
         rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -7590,9 +7578,11 @@ def _run_required(m, X, V, A):
         rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-qdd_2) acceleration of joint 2
         rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x
+        # (rrrs-qdd_3) acceleration of joint 3
+        rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_in_axes2_x = rrrs_c_2*rrrs_qdd_1
-        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
+        rrrs_alpha_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1
+        rrrs_alpha_1_t = rrrs_h_2_t_20*rrrs_qdd_1
         # (rrrs-alpha_2) angular acceleration of link 2
         rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_in_axes2_x
         rrrs_alpha_2_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_t
@@ -7603,15 +7593,13 @@ def _run_required(m, X, V, A):
         rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x
         # (rrrs-alpha_3) angular acceleration of link 3
         rrrs_alpha_3_in_axes3_x = (
-        rrrs_alpha_2_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+        rrrs_zeta_3_in_axes3_x + rrrs_alpha_2_in_axes2_x*rrrs_c_3 -
             rrrs_alpha_2_in_axes2_y*rrrs_s_3_t
         )
         rrrs_alpha_3_in_axes3_y = (
         rrrs_alpha_2_in_axes2_x*rrrs_s_3_t + rrrs_alpha_2_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t
         )
-        rrrs_alpha_3_in_axes3_z = (
-        rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
-        )
+        rrrs_alpha_3_in_axes3_z = rrrs_qdd_2 + rrrs_qdd_3
         # (rrrs-B_3) acceleration tensor of link 3
         rrrs_B_3_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z
         rrrs_B_3_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y
@@ -7620,39 +7608,45 @@ def _run_required(m, X, V, A):
         rrrs_B_3_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y
         rrrs_B_3_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x
         # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_in_axes3_x = (
-        rrrs_S_ddot_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_x = (
+        axis_x_rrrs_axes3_x*gravity_x + axis_x_rrrs_axes3_y*gravity_y +
             axis_x_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_in_axes3_y = (
-        rrrs_S_ddot_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_y = (
+        axis_y_rrrs_axes3_x*gravity_x + axis_y_rrrs_axes3_y*gravity_y +
             axis_y_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_in_axes3_z = (
-        rrrs_S_ddot_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_z = (
+        axis_z_rrrs_axes3_x*gravity_x + axis_z_rrrs_axes3_y*gravity_y +
             axis_z_rrrs_axes3_z*gravity_z
         )
+        rrrs_acc_3_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_g_in_axes3_x
+        rrrs_acc_3_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_g_in_axes3_y
+        rrrs_acc_3_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_g_in_axes3_z
         # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
         rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
         rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_t_4 = rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_5 = rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_6 = rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2)
         rrrs_mu_3_in_axes3_x = (
-        rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz + rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy
-            + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3) +
+        rrrs_mu_3_t_4 + rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+            rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
             rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
             rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
             rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z
         )
         rrrs_mu_3_in_axes3_y = (
         rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz + rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy
-            + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z -
+            + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z - rrrs_mu_3_t_5 -
             rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
-            rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x
+            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx -
+            rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x
         )
         rrrs_mu_3_in_axes3_z = (
-        rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz + rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx
-            + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2) +
+        rrrs_mu_3_t_6 + rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx +
             rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
             rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y
@@ -7663,27 +7657,36 @@ def _run_required(m, X, V, A):
         rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
-        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
+        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
+        rrrs_mu_2_t_9 = (
+        rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z
+        )
+        rrrs_mu_2_t_10 = (
+        rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z - rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x
+        )
+        rrrs_mu_2_t_11 = (
+        rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y
+        )
         rrrs_mu_2_in_axes2_x = (
-        rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz + rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy
-            + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5) +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_x +
-            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y
+        rrrs_mu_2_t_6 + rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+            rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_x - rrrs_mu_2_t_9 -
+            rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy
         )
         rrrs_mu_2_in_axes2_y = (
-        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy + rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x -
+        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy - rrrs_mu_2_t_10 - rrrs_mu_2_t_7 -
             rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
-            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_5) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t -
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
+            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t
         )
         rrrs_mu_2_in_axes2_z = (
-        rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_4) + rrrs_J_2_in_spec2_xz*rrrs_alpha_1_in_axes2_x +
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y - rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy
-            - rrrs_J_2_in_spec2_yz*rrrs_alpha_1_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
+        rrrs_mu_2_t_8 + rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_in_axes2_x - rrrs_mu_2_t_11 -
+            rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy - rrrs_J_2_in_spec2_yz*rrrs_alpha_1_t
         )
         # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_in_axes2_x = (
@@ -7694,30 +7697,33 @@ def _run_required(m, X, V, A):
         )
         rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z
         # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_in_axes1_z = (
-        rrrs_J_1_in_spec1_xx*rrrs_qdd_1 + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
-            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
+        rrrs_mu_1_t = (
+        rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z
         )
+        rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_mu_1_t
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_in_axes1_z = (
-        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_c_2 - rrrs_N_2_in_axes2_y*rrrs_s_2
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_h_2_t_19 -
+            rrrs_N_2_in_axes2_y*rrrs_h_2_t_20
         )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_t = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3)
+        rrrs_c_t_2 = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3)
+        rrrs_c_t_3 = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2)
         rrrs_c_in_axes3_x = (
-        rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
-            rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_in_axes2_z) -
-            rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y - rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z
+        rrrs_c_t + rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x -
+            rrrs_N_2_in_axes2_z) - rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_in_axes3_y = (
-        rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) - rrrs_G_in_axes3_y -
-            rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z
+        rrrs_c_t_2 - rrrs_G_in_axes3_y - rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_in_axes3_z = (
-        rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
-            rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
-            rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z
+        rrrs_c_t_3 - rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y - rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z
         )
         rrrs_c_x = (
         axis_x_rrrs_axes3_x*rrrs_c_in_axes3_x + axis_y_rrrs_axes3_x*rrrs_c_in_axes3_y +
@@ -7744,8 +7750,8 @@ def _run_required(m, X, V, A):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -7847,86 +7853,80 @@ def _run_inverse_kinematics(m, X):
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size_t_3,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
-        # (rrrrs-S) from the base point to the connection point
-        rrrrs_S_x = (
-        t_x + R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
-            R_xz*rrrrs_platform_point_z - rrrrs_base_point_x
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        rrrrs_q_x = (
+        R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        rrrrs_S_y = (
-        t_y + R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y +
-            R_yz*rrrrs_platform_point_z - rrrrs_base_point_y
+        rrrrs_q_y = (
+        R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        rrrrs_S_z = (
-        t_z + R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y +
-            R_zz*rrrrs_platform_point_z - rrrrs_base_point_z
+        rrrrs_q_z = (
+        R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_in_turn1_x = (
-        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
-            rrrrs_S_z*rrrrs_base_frame_zy
+        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
+        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
+        rrrrs_h_3_t_8 = (
+        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zy*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_y = (
-        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
-            rrrrs_S_z*rrrrs_base_frame_zz
+        rrrrs_h_3_t_9 = (
+        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zz*rrrrs_h_3_t_5
         )
-        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrrs_s_2 = sin(rrrrs_y_2_extra)
-        # (rrrrs-rho2_1) squared amplitude
-        rrrrs_rho2_1 = (
-        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
+        rrrrs_h_3_t_10 = (
+        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zx*rrrrs_h_3_t_5
         )
-        # (rrrrs-root_1) root, with the sign of the branch
-        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
+        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
+        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
+        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
+        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
+        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
+        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
+        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
+        )
+        rrrrs_h_3_t_27 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        )
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
+        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-q_1) displacement of joint 1
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_q_1 = (
-        atan2(inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1,
-            inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1)
-        )
-        # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_in_axes1_z = (
-        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
-            rrrrs_S_z*rrrrs_base_frame_zx - rrrrs_joint2_offset_x
-        )
-        rrrrs_x_2_in_axes2_y = rrrrs_c_2*rrrrs_root_1 - rrrrs_s_2*rrrrs_x_2_in_axes1_z
-        # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_in_axes2_x = (
-        rrrrs_c_2*rrrrs_x_2_in_axes1_z + rrrrs_root_1*rrrrs_s_2 - rrrrs_joint3_offset_x
-        )
-        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t = (
-        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
-        )
-        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
-        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
-        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
-        # (rrrrs-rho2_3) squared amplitude
-        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
-        # (rrrrs-disc_3) discriminant
-        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
-        # (rrrrs-root_3) root, with the sign of the branch
-        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        rrrrs_q_1 = atan2(rrrrs_s_1, rrrrs_c_1)
         # (rrrrs-q_3) displacement of joint 3
-        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
-        rrrrs_q_3 = (
-        atan2(inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3),
-            inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3))
-        )
+        rrrrs_q_3 = atan2(rrrrs_h_3_t_27, rrrrs_h_3_t_26)
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        )
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4_t = (
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-q_4) displacement of joint 4
-        rrrrs_q_4 = (
-        atan2(-inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3,
-            inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x)
-        )
+        rrrrs_q_4 = atan2(-rrrrs_s_4_t, rrrrs_c_4)
         ok = (
-        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
-            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
+        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            0.0)
         )
         # (rrrrs-q_1) displacement of joint 1
         out_q[_q_rrrrs[0][leg]] = rrrrs_q_1
@@ -7938,79 +7938,80 @@ def _run_inverse_kinematics(m, X):
         out_q[_q_rrrrs[3][leg]] = rrrrs_q_4
     for leg, k in legs[1]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
+            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size_t_3,
         ) = k
-        # (rrrs-S) from the base point to the connection point
-        rrrs_S_x = (
-        t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
-            - rrrs_base_point_x
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        rrrs_q_x = (
+        R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_S_y = (
-        t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
-            - rrrs_base_point_y
+        rrrs_q_y = (
+        R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_S_z = (
-        t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
-            - rrrs_base_point_z
+        rrrs_q_z = (
+        R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
+        )
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-q_1) displacement of joint 1
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_q_1 = (
-        atan2(inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1,
-            inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1)
-        )
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx -
-            rrrs_joint2_offset_x
-        )
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        rrrs_q_1 = atan2(rrrs_s_1, rrrs_c_1)
         # (rrrs-q_2) displacement of joint 2
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_q_2 = (
-        atan2(inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2),
-            inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2))
-        )
+        rrrs_q_2 = atan2(rrrs_h_2_t_20, rrrs_h_2_t_19)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
+        # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
+        # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrs_s_3_t = (
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-q_3) displacement of joint 3
-        rrrs_q_3 = (
-        atan2(-inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2,
-            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x)
-        )
+        rrrs_q_3 = atan2(-rrrs_s_3_t, rrrs_c_3)
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0)
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0)
         )
         # (rrrs-q_1) displacement of joint 1
         out_q[_q_rrrs[0][leg]] = rrrs_q_1
@@ -8021,7 +8022,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 357 mul, 210 add, 12 div, 6 sqrt, 2 trig
+# joint_rates: 363 mul, 210 add, 12 div, 6 sqrt, 2 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -8090,7 +8091,7 @@ def _run_joint_rates(m, X, V):
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
-        # (rrrrs-S) from the base point to the connection point
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -8100,120 +8101,113 @@ def _run_joint_rates(m, X, V):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_S_in_turn1_x = (
-        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
-            rrrrs_S_z*rrrrs_base_frame_zy
+        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
+        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
+        rrrrs_h_3_t_8 = (
+        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zy*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_y = (
-        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
-            rrrrs_S_z*rrrrs_base_frame_zz
+        rrrrs_h_3_t_9 = (
+        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zz*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_z = (
-        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
-            rrrrs_S_z*rrrrs_base_frame_zx
+        rrrrs_h_3_t_10 = (
+        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zx*rrrrs_h_3_t_5
         )
-        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrrs_s_2 = sin(rrrrs_y_2_extra)
-        # (rrrrs-rho2_1) squared amplitude
-        rrrrs_rho2_1 = (
-        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
+        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
+        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
+        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
+        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
+        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
+        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
+        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
+        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
         )
-        # (rrrrs-root_1) root, with the sign of the branch
-        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        rrrrs_h_3_t_27 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
+        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
+        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
-        # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_in_axes2_x = rrrrs_x_2_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z
-        rrrrs_x_2_t_2 = rrrrs_c_2*rrrrs_root_1
-        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 - rrrrs_s_2*rrrrs_x_2_in_axes1_z
-        # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
-        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t = (
-        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
-        )
-        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
-        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
-        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
-        # (rrrrs-rho2_3) squared amplitude
-        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
-        # (rrrrs-disc_3) discriminant
-        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
-        # (rrrrs-root_3) root, with the sign of the branch
-        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
-        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
-        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-S_dot) velocity of the connection point
-        rrrrs_S_dot_x = t_dot_x + omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
-        rrrrs_S_dot_y = t_dot_y + omega_z*rrrrs_q_x - omega_x*rrrrs_q_z
-        rrrrs_S_dot_z = t_dot_z + omega_x*rrrrs_q_y - omega_y*rrrrs_q_x
+        rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
+        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_x - omega_x*rrrrs_q_z
+        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_y - omega_y*rrrrs_q_x
+        rrrrs_S_dot_x = rrrrs_S_dot_t + t_dot_x
+        rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
+        rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
         rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
         rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
         rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_c_3*rrrrs_x_2_in_axes2_x + rrrrs_s_3*rrrrs_x_2_in_axes2_y
-        rrrrs_r_2_t_2 = rrrrs_c_3*rrrrs_x_2_in_axes2_y - rrrrs_s_3*rrrrs_x_2_in_axes2_x
+        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
         rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
         rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
-        rrrrs_v_1_t_3 = rrrrs_x_2_t + rrrrs_S_in_turn1_z*rrrrs_c_2
-        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 - rrrrs_S_in_turn1_z*rrrrs_s_2
-        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
+        rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
+        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
-        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
-            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
-            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
+            rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
         )
-        # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_x = rrrrs_base_frame_xz*rrrrs_c_1 - rrrrs_base_frame_xy*rrrrs_s_1
         axis_z_rrrrs_axes4_y = rrrrs_base_frame_yz*rrrrs_c_1 - rrrrs_base_frame_yy*rrrrs_s_1
         axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 - rrrrs_base_frame_zy*rrrrs_s_1
-        rrrrs_S_dot_rest_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
-        rrrrs_S_dot_rest_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
-        rrrrs_S_dot_rest_t_3 = rrrrs_S_dot_rest_t*rrrrs_c_2 - rrrrs_S_dot_rest_t_2*rrrrs_s_2
-        rrrrs_S_dot_rest_t_4 = rrrrs_S_dot_rest_t*rrrrs_s_2 + rrrrs_S_dot_rest_t_2*rrrrs_c_2
-        rrrrs_S_dot_rest_t_5 = rrrrs_S_dot_rest_t_4*rrrrs_c_1
-        rrrrs_S_dot_rest_t_6 = rrrrs_S_dot_rest_t_4*rrrrs_s_1
+        rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
+        rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
-        rrrrs_S_dot_rest_t_3*rrrrs_base_frame_xx + rrrrs_S_dot_rest_t_5*rrrrs_base_frame_xy +
-            rrrrs_S_dot_rest_t_6*rrrrs_base_frame_xz
+        rrrrs_base_frame_xx*rrrrs_w_3_t_3 + rrrrs_base_frame_xy*rrrrs_w_3_t_5 +
+            rrrrs_base_frame_xz*rrrrs_w_3_t_6
         )
         axis_y_rrrrs_axes4_y = (
-        rrrrs_S_dot_rest_t_3*rrrrs_base_frame_yx + rrrrs_S_dot_rest_t_5*rrrrs_base_frame_yy +
-            rrrrs_S_dot_rest_t_6*rrrrs_base_frame_yz
+        rrrrs_base_frame_yx*rrrrs_w_3_t_3 + rrrrs_base_frame_yy*rrrrs_w_3_t_5 +
+            rrrrs_base_frame_yz*rrrrs_w_3_t_6
         )
         axis_y_rrrrs_axes4_z = (
-        rrrrs_S_dot_rest_t_3*rrrrs_base_frame_zx + rrrrs_S_dot_rest_t_5*rrrrs_base_frame_zy +
-            rrrrs_S_dot_rest_t_6*rrrrs_base_frame_zz
+        rrrrs_base_frame_zx*rrrrs_w_3_t_3 + rrrrs_base_frame_zy*rrrrs_w_3_t_5 +
+            rrrrs_base_frame_zz*rrrrs_w_3_t_6
         )
         axis_x_rrrrs_axes4_x = (
         axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
@@ -8224,6 +8218,8 @@ def _run_joint_rates(m, X, V):
         axis_x_rrrrs_axes4_z = (
         axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
         )
+        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
+        # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         rrrrs_S_dot_rest_x = (
         rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
             axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y)
@@ -8238,25 +8234,25 @@ def _run_joint_rates(m, X, V):
         )
         # (rrrrs-qd_1) rate of joint 1
         rrrrs_qd_1 = (
-        (axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x + axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
-            axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)/rrrrs_v_1_in_axes4_z
+        rrrrs_w_1_in_axes4_z*(axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_3) rate of joint 3
         rrrrs_qd_3 = (
-        -(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x + axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
-            axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)/rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_4) rate of joint 4
         rrrrs_qd_4 = (
         rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
             axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
-            rrrrs_qd_3*(rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t))
+            rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
         )
         ok = (
-        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
-            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
-            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
-            _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
+            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
         # (rrrrs-qd_1) rate of joint 1
         out_qd[_qd_rrrrs[0][leg]] = rrrrs_qd_1
@@ -8268,15 +8264,15 @@ def _run_joint_rates(m, X, V):
         out_qd[_qd_rrrrs[3][leg]] = rrrrs_qd_4
     for leg, k in legs[1]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
+            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -8286,127 +8282,135 @@ def _run_joint_rates(m, X, V):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_x = t_dot_x + omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_y = t_dot_y + omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_z = t_dot_z + omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
         # (rrrs-r_2) from joint 2 to the connection point, along the links
         rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
-        # (rrrs-qd_1) rate of joint 1
+        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_qd_1 = (
-        (axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_z_rrrs_axes3_z*rrrs_S_dot_z)/rrrs_v_1_in_axes3_z
-        )
-        # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_qd_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t +
-            rrrs_base_frame_xz*rrrs_qd_2_t_2
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
+            rrrs_base_frame_xz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t +
-            rrrs_base_frame_yz*rrrs_qd_2_t_2
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
+            rrrs_base_frame_yz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t +
-            rrrs_base_frame_zz*rrrs_qd_2_t_2
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
+            rrrs_base_frame_zz*rrrs_w_2_t_2
         )
-        rrrs_qd_2_t_3 = (
-        (rrrs_S_dot_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y) +
-            rrrs_S_dot_y*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z) +
-            rrrs_S_dot_z*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x))/rrrs_r_2_in_axes3_y
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        # (rrrs-qd_1) rate of joint 1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
+        rrrs_qd_2_t = (
+        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
+            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t_3*(rrrs_c_3*rrrs_r_2_in_axes2_x +
-            rrrs_r_2_t*rrrs_s_3_t))
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
         # (rrrs-qd_1) rate of joint 1
         out_qd[_qd_rrrs[0][leg]] = rrrs_qd_1
         # (rrrs-qd_2) rate of joint 2
-        out_qd[_qd_rrrs[1][leg]] = -rrrs_qd_2_t_3
+        out_qd[_qd_rrrs[1][leg]] = -rrrs_qd_2_t
         # (rrrs-qd_3) rate of joint 3
         out_qd[_qd_rrrs[2][leg]] = rrrs_qd_3
     return ok, (out_qd,)
 
 
-# joint_accelerations: 601 mul, 365 add, 12 div, 6 sqrt, 2 trig
+# joint_accelerations: 601 mul, 368 add, 12 div, 6 sqrt, 2 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -8475,6 +8479,23 @@ def _run_joint_accelerations(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
@@ -8489,7 +8510,7 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
         rrrrs_ydd_2 = A[[6][leg]]
-        # (rrrrs-S) from the base point to the connection point
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -8499,73 +8520,59 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_S_in_turn1_x = (
-        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
-            rrrrs_S_z*rrrrs_base_frame_zy
+        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
+        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
+        rrrrs_h_3_t_8 = (
+        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zy*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_y = (
-        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
-            rrrrs_S_z*rrrrs_base_frame_zz
+        rrrrs_h_3_t_9 = (
+        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zz*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_z = (
-        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
-            rrrrs_S_z*rrrrs_base_frame_zx
+        rrrrs_h_3_t_10 = (
+        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zx*rrrrs_h_3_t_5
         )
-        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrrs_s_2 = sin(rrrrs_y_2_extra)
-        # (rrrrs-rho2_1) squared amplitude
-        rrrrs_rho2_1 = (
-        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
+        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
+        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
+        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
+        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
+        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
+        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
+        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
+        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
         )
-        # (rrrrs-root_1) root, with the sign of the branch
-        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        rrrrs_h_3_t_27 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
+        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
+        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
-        # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_in_axes2_x = rrrrs_x_2_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z
-        rrrrs_x_2_t_2 = rrrrs_c_2*rrrrs_root_1
-        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 - rrrrs_s_2*rrrrs_x_2_in_axes1_z
-        # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
-        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t = (
-        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
-        )
-        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
-        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
-        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
-        # (rrrrs-rho2_3) squared amplitude
-        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
-        # (rrrrs-disc_3) discriminant
-        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
-        # (rrrrs-root_3) root, with the sign of the branch
-        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
-        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
-        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -8580,47 +8587,46 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
         rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_c_3*rrrrs_x_2_in_axes2_x + rrrrs_s_3*rrrrs_x_2_in_axes2_y
-        rrrrs_r_2_t_2 = rrrrs_c_3*rrrrs_x_2_in_axes2_y - rrrrs_s_3*rrrrs_x_2_in_axes2_x
+        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
         rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
         rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
-        rrrrs_v_1_t_3 = rrrrs_x_2_t + rrrrs_S_in_turn1_z*rrrrs_c_2
-        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 - rrrrs_S_in_turn1_z*rrrrs_s_2
-        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
+        rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
+        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
-        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
-            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
-            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
+            rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
         )
         # (rrrrs-w_1) reciprocal vector 1
-        rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
-        # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
-        # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         axis_z_rrrrs_axes4_x = rrrrs_base_frame_xz*rrrrs_c_1 - rrrrs_base_frame_xy*rrrrs_s_1
         axis_z_rrrrs_axes4_y = rrrrs_base_frame_yz*rrrrs_c_1 - rrrrs_base_frame_yy*rrrrs_s_1
         axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 - rrrrs_base_frame_zy*rrrrs_s_1
-        rrrrs_S_dot_rest_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
-        rrrrs_S_dot_rest_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
-        rrrrs_S_dot_rest_t_3 = rrrrs_S_dot_rest_t*rrrrs_c_2 - rrrrs_S_dot_rest_t_2*rrrrs_s_2
-        rrrrs_S_dot_rest_t_4 = rrrrs_S_dot_rest_t*rrrrs_s_2 + rrrrs_S_dot_rest_t_2*rrrrs_c_2
-        rrrrs_S_dot_rest_t_5 = rrrrs_S_dot_rest_t_4*rrrrs_c_1
-        rrrrs_S_dot_rest_t_6 = rrrrs_S_dot_rest_t_4*rrrrs_s_1
+        rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
+        rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
-        rrrrs_S_dot_rest_t_3*rrrrs_base_frame_xx + rrrrs_S_dot_rest_t_5*rrrrs_base_frame_xy +
-            rrrrs_S_dot_rest_t_6*rrrrs_base_frame_xz
+        rrrrs_base_frame_xx*rrrrs_w_3_t_3 + rrrrs_base_frame_xy*rrrrs_w_3_t_5 +
+            rrrrs_base_frame_xz*rrrrs_w_3_t_6
         )
         axis_y_rrrrs_axes4_y = (
-        rrrrs_S_dot_rest_t_3*rrrrs_base_frame_yx + rrrrs_S_dot_rest_t_5*rrrrs_base_frame_yy +
-            rrrrs_S_dot_rest_t_6*rrrrs_base_frame_yz
+        rrrrs_base_frame_yx*rrrrs_w_3_t_3 + rrrrs_base_frame_yy*rrrrs_w_3_t_5 +
+            rrrrs_base_frame_yz*rrrrs_w_3_t_6
         )
         axis_y_rrrrs_axes4_z = (
-        rrrrs_S_dot_rest_t_3*rrrrs_base_frame_zx + rrrrs_S_dot_rest_t_5*rrrrs_base_frame_zy +
-            rrrrs_S_dot_rest_t_6*rrrrs_base_frame_zz
+        rrrrs_base_frame_zx*rrrrs_w_3_t_3 + rrrrs_base_frame_zy*rrrrs_w_3_t_5 +
+            rrrrs_base_frame_zz*rrrrs_w_3_t_6
         )
         axis_x_rrrrs_axes4_x = (
         axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
@@ -8631,6 +8637,8 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rrrrs_axes4_z = (
         axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
         )
+        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
+        # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         rrrrs_S_dot_rest_x = (
         rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
             axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y)
@@ -8660,11 +8668,13 @@ def _run_joint_accelerations(m, X, V, A):
             rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_in_axes2_x = rrrrs_c_2*rrrrs_qd_1
-        rrrrs_omega_1_in_axes2_y = -rrrrs_qd_1*rrrrs_s_2
-        rrrrs_omega_1_t = rrrrs_c_3*rrrrs_omega_1_in_axes2_x + rrrrs_omega_1_in_axes2_y*rrrrs_s_3
+        rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
+        rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
+        rrrrs_omega_1_t = (
+        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_y
+        )
         rrrrs_omega_1_t_2 = (
-        rrrrs_c_3*rrrrs_omega_1_in_axes2_y - rrrrs_omega_1_in_axes2_x*rrrrs_s_3
+        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_x
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -8679,39 +8689,64 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2
         # (rrrrs-omega_4) angular velocity of link 4
         rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4
+        # (rrrrs-W_4) centripetal tensor of link 4
+        rrrrs_W_4_t = rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z
+        rrrrs_W_4_t_2 = rrrrs_W_1_t_2 + rrrrs_W_4_t
+        rrrrs_W_4_in_axes4_xz = rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z
+        # (rrrrs-u_1) centripetal acceleration of the connection point
+        rrrrs_u_1_x = omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
+        rrrrs_u_1_y = omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
+        rrrrs_u_1_z = omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
         # (rrrrs-a_p) acceleration of the connection point without its centripetal part
         rrrrs_a_p_x = t_ddot_x + alpha_y*rrrrs_q_z - alpha_z*rrrrs_q_y
         rrrrs_a_p_y = t_ddot_y + alpha_z*rrrrs_q_x - alpha_x*rrrrs_q_z
         rrrrs_a_p_z = t_ddot_z + alpha_x*rrrrs_q_y - alpha_y*rrrrs_q_x
         # (rrrrs-S_ddot) acceleration of the connection point
-        rrrrs_S_ddot_x = rrrrs_a_p_x + omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
-        rrrrs_S_ddot_y = rrrrs_a_p_y + omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
-        rrrrs_S_ddot_z = rrrrs_a_p_z + omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
+        rrrrs_S_ddot_x = rrrrs_a_p_x + rrrrs_u_1_x
+        rrrrs_S_ddot_y = rrrrs_a_p_y + rrrrs_u_1_y
+        rrrrs_S_ddot_z = rrrrs_a_p_z + rrrrs_u_1_z
+        rrrrs_S_ddot_in_axes4_x = (
+        axis_x_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_x_rrrrs_axes4_y*rrrrs_S_ddot_y +
+            axis_x_rrrrs_axes4_z*rrrrs_S_ddot_z
+        )
+        rrrrs_S_ddot_in_axes4_y = (
+        axis_y_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_y_rrrrs_axes4_y*rrrrs_S_ddot_y +
+            axis_y_rrrrs_axes4_z*rrrrs_S_ddot_z
+        )
+        rrrrs_S_ddot_in_axes4_z = (
+        axis_z_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_z_rrrrs_axes4_y*rrrrs_S_ddot_y +
+            axis_z_rrrrs_axes4_z*rrrrs_S_ddot_z
+        )
+        # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3
+        rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_W_2_in_axes2_yz*rrrrs_c_3 + rrrrs_omega_1_t_2*rrrrs_qd_3 -
-            rrrrs_W_2_in_axes2_xz*rrrrs_s_3
+        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_27
         )
         rrrrs_beta_3_in_axes3_y = (
-        -rrrrs_W_2_in_axes2_xz*rrrrs_c_3 - rrrrs_W_2_in_axes2_yz*rrrrs_s_3 -
-            rrrrs_omega_1_t*rrrrs_qd_3
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_27
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
         )
+        # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*rrrrs_qd_4
         # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
-        rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_omega_1_in_axes4_x*rrrrs_qd_4
+        rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
         # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_in_axes2_x = rrrrs_c_2*rrrrs_joint2_offset_x
-        rrrrs_d_2_in_axes2_y = -rrrrs_joint2_offset_x*rrrrs_s_2
+        rrrrs_d_2_in_axes2_x = rrrrs_h_3_t_6*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x + rrrrs_d_2_in_axes2_y*rrrrs_s_3
-        rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y - rrrrs_d_2_in_axes2_x*rrrrs_s_3
+        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_27
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
-        rrrrs_bias_t_5 = rrrrs_c_3*rrrrs_joint3_offset_x
-        rrrrs_bias_t_6 = rrrrs_joint3_offset_x*rrrrs_s_3
+        rrrrs_bias_t_5 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_bias_t_6 = rrrrs_h_3_t_27*rrrrs_joint3_offset_x
         rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
         rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
         rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
@@ -8719,10 +8754,8 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_bias_in_axes4_x = (
         rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_y + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
             rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
-            rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t) -
-            rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2) -
-            rrrrs_platform_joint_offset_x*(rrrrs_W_1_t_2 +
-            rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z)
+            rrrrs_W_4_t_2*rrrrs_platform_joint_offset_x - rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 +
+            rrrrs_bias_t) - rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2)
         )
         rrrrs_bias_in_axes4_y = (
         rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_x + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_x +
@@ -8736,26 +8769,18 @@ def _run_joint_accelerations(m, X, V, A):
             rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
             rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
             rrrrs_beta_3_in_axes3_y*rrrrs_s_4_t) +
-            rrrrs_platform_joint_offset_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z -
-            rrrrs_beta_4_in_axes4_y) +
+            rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
             2.0*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
             2.0*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2
         )
         # (rrrrs-rel) acceleration of the connection point left to the joint accelerations
         rrrrs_rel_in_axes4_x = (
-        axis_x_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_x_rrrrs_axes4_y*rrrrs_S_ddot_y +
-            axis_x_rrrrs_axes4_z*rrrrs_S_ddot_z + rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 -
-            rrrrs_bias_in_axes4_x
+        rrrrs_S_ddot_in_axes4_x + rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 - rrrrs_bias_in_axes4_x
         )
         rrrrs_rel_in_axes4_y = (
-        axis_y_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_y_rrrrs_axes4_y*rrrrs_S_ddot_y +
-            axis_y_rrrrs_axes4_z*rrrrs_S_ddot_z - rrrrs_bias_in_axes4_y -
-            rrrrs_r_2_in_axes4_x*rrrrs_ydd_2
+        rrrrs_S_ddot_in_axes4_y - rrrrs_bias_in_axes4_y - rrrrs_r_2_in_axes4_x*rrrrs_ydd_2
         )
-        rrrrs_rel_in_axes4_z = (
-        axis_z_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_z_rrrrs_axes4_y*rrrrs_S_ddot_y +
-            axis_z_rrrrs_axes4_z*rrrrs_S_ddot_z - rrrrs_bias_in_axes4_z
-        )
+        rrrrs_rel_in_axes4_z = rrrrs_S_ddot_in_axes4_z - rrrrs_bias_in_axes4_z
         # (rrrrs-qdd_1) acceleration of joint 1
         rrrrs_qdd_1 = rrrrs_rel_in_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-qdd_3) acceleration of joint 3
@@ -8765,10 +8790,10 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y - rrrrs_qdd_3*rrrrs_r_3_in_axes4_x)
         )
         ok = (
-        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
-            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
-            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
-            _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
+            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
         # (rrrrs-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rrrrs[0][leg]] = rrrrs_qdd_1
@@ -8780,15 +8805,15 @@ def _run_joint_accelerations(m, X, V, A):
         out_qdd[_qdd_rrrrs[3][leg]] = rrrrs_qdd_4
     for leg, k in legs[1]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
+            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -8798,56 +8823,52 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
         rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
@@ -8862,40 +8883,33 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
         # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
-        # (rrrs-qd_1) rate of joint 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_qd_1 = (
-        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
-        )
-        # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_qd_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t +
-            rrrs_base_frame_xz*rrrs_qd_2_t_2
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
+            rrrs_base_frame_xz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t +
-            rrrs_base_frame_yz*rrrs_qd_2_t_2
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
+            rrrs_base_frame_yz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t +
-            rrrs_base_frame_zz*rrrs_qd_2_t_2
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
+            rrrs_base_frame_zz*rrrs_w_2_t_2
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -8906,48 +8920,65 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
-        rrrs_qd_2_t_3 = (
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        # (rrrs-qd_1) rate of joint 1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
+        rrrs_qd_2_t = (
         -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
             + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t_3*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
         rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
         rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t_3
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t_3
-        # (rrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y
-        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z
-        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x
+        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
         # (rrrs-S_ddot) acceleration of the connection point
-        rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
-        rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
-        rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_S_ddot_x = t_ddot_x + B_p_xy*rrrs_q_y + B_p_xz*rrrs_q_z - W_p_t_4*rrrs_q_x
+        rrrs_S_ddot_y = t_ddot_y + B_p_yx*rrrs_q_x + B_p_yz*rrrs_q_z - W_p_t_5*rrrs_q_y
+        rrrs_S_ddot_z = t_ddot_z + B_p_zx*rrrs_q_x + B_p_zy*rrrs_q_y - W_p_t_6*rrrs_q_z
+        rrrs_S_ddot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_ddot_z
+        )
+        rrrs_S_ddot_in_axes3_y = (
+        axis_y_rrrs_axes3_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_ddot_z
+        )
+        rrrs_S_ddot_in_axes3_z = (
+        axis_z_rrrs_axes3_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_ddot_z
+        )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t_3
+        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_omega_1_in_axes3_x*rrrs_qd_3
+        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
         rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
         rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
+        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
         rrrs_bias_t_6 = (
         rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
@@ -8955,12 +8986,12 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
         rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t_3 - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
             rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
         rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t_3 - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
         rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
@@ -8970,18 +9001,9 @@ def _run_joint_accelerations(m, X, V, A):
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
-        rrrs_rel_in_axes3_x = (
-        axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
-            axis_x_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_in_axes3_x
-        )
-        rrrs_rel_in_axes3_y = (
-        axis_y_rrrs_axes3_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_y*rrrs_S_ddot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_in_axes3_y
-        )
-        rrrs_rel_in_axes3_z = (
-        axis_z_rrrs_axes3_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_y*rrrs_S_ddot_y +
-            axis_z_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_in_axes3_z
-        )
+        rrrs_rel_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_bias_in_axes3_x
+        rrrs_rel_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_bias_in_axes3_y
+        rrrs_rel_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_bias_in_axes3_z
         # (rrrs-qdd_1) acceleration of joint 1
         rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-qdd_2) acceleration of joint 2
@@ -8989,8 +9011,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrrs-qdd_3) acceleration of joint 3
         rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -9003,7 +9025,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 986 mul, 715 add, 12 div, 6 sqrt, 2 trig
+# legs: 986 mul, 718 add, 12 div, 6 sqrt, 2 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -9074,6 +9096,23 @@ def _run_legs(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
@@ -9099,7 +9138,7 @@ def _run_legs(m, X, V, A):
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
         rrrrs_ydd_2 = A[[6][leg]]
-        # (rrrrs-S) from the base point to the connection point
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -9109,73 +9148,59 @@ def _run_legs(m, X, V, A):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_S_in_turn1_x = (
-        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
-            rrrrs_S_z*rrrrs_base_frame_zy
+        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
+        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
+        rrrrs_h_3_t_8 = (
+        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zy*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_y = (
-        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
-            rrrrs_S_z*rrrrs_base_frame_zz
+        rrrrs_h_3_t_9 = (
+        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zz*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_z = (
-        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
-            rrrrs_S_z*rrrrs_base_frame_zx
+        rrrrs_h_3_t_10 = (
+        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zx*rrrrs_h_3_t_5
         )
-        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrrs_s_2 = sin(rrrrs_y_2_extra)
-        # (rrrrs-rho2_1) squared amplitude
-        rrrrs_rho2_1 = (
-        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
+        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
+        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
+        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
+        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
+        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
+        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
+        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
+        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
         )
-        # (rrrrs-root_1) root, with the sign of the branch
-        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        rrrrs_h_3_t_27 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
+        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
+        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
-        # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_in_axes2_x = rrrrs_x_2_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z
-        rrrrs_x_2_t_2 = rrrrs_c_2*rrrrs_root_1
-        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 - rrrrs_s_2*rrrrs_x_2_in_axes1_z
-        # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
-        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t = (
-        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
-        )
-        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
-        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
-        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
-        # (rrrrs-rho2_3) squared amplitude
-        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
-        # (rrrrs-disc_3) discriminant
-        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
-        # (rrrrs-root_3) root, with the sign of the branch
-        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
-        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
-        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -9190,21 +9215,22 @@ def _run_legs(m, X, V, A):
         rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
         rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_c_3*rrrrs_x_2_in_axes2_x + rrrrs_s_3*rrrrs_x_2_in_axes2_y
-        rrrrs_r_2_t_2 = rrrrs_c_3*rrrrs_x_2_in_axes2_y - rrrrs_s_3*rrrrs_x_2_in_axes2_x
+        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
         rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
         rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
-        rrrrs_v_1_t_3 = rrrrs_x_2_t + rrrrs_S_in_turn1_z*rrrrs_c_2
-        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 - rrrrs_S_in_turn1_z*rrrrs_s_2
-        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
+        rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
+        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
-        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
-            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
-            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
+            rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
         )
         # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_x = rrrrs_base_frame_xz*rrrrs_c_1 - rrrrs_base_frame_xy*rrrrs_s_1
@@ -9215,10 +9241,10 @@ def _run_legs(m, X, V, A):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
-        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
-        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
-        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
+        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
         rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
@@ -9276,11 +9302,13 @@ def _run_legs(m, X, V, A):
             rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_in_axes2_x = rrrrs_c_2*rrrrs_qd_1
-        rrrrs_omega_1_in_axes2_y = -rrrrs_qd_1*rrrrs_s_2
-        rrrrs_omega_1_t = rrrrs_c_3*rrrrs_omega_1_in_axes2_x + rrrrs_omega_1_in_axes2_y*rrrrs_s_3
+        rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
+        rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
+        rrrrs_omega_1_t = (
+        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_y
+        )
         rrrrs_omega_1_t_2 = (
-        rrrrs_c_3*rrrrs_omega_1_in_axes2_y - rrrrs_omega_1_in_axes2_x*rrrrs_s_3
+        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_x
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -9305,14 +9333,18 @@ def _run_legs(m, X, V, A):
         rrrrs_W_4_t_2 = rrrrs_W_1_t_2 + rrrrs_W_4_t
         rrrrs_W_4_in_axes4_xz = rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z
         rrrrs_W_4_in_axes4_yz = rrrrs_omega_1_in_axes4_y*rrrrs_omega_4_in_axes4_z
+        # (rrrrs-u_1) centripetal acceleration of the connection point
+        rrrrs_u_1_x = omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
+        rrrrs_u_1_y = omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
+        rrrrs_u_1_z = omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
         # (rrrrs-a_p) acceleration of the connection point without its centripetal part
         rrrrs_a_p_x = t_ddot_x + alpha_y*rrrrs_q_z - alpha_z*rrrrs_q_y
         rrrrs_a_p_y = t_ddot_y + alpha_z*rrrrs_q_x - alpha_x*rrrrs_q_z
         rrrrs_a_p_z = t_ddot_z + alpha_x*rrrrs_q_y - alpha_y*rrrrs_q_x
         # (rrrrs-S_ddot) acceleration of the connection point
-        rrrrs_S_ddot_x = rrrrs_a_p_x + omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
-        rrrrs_S_ddot_y = rrrrs_a_p_y + omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
-        rrrrs_S_ddot_z = rrrrs_a_p_z + omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
+        rrrrs_S_ddot_x = rrrrs_a_p_x + rrrrs_u_1_x
+        rrrrs_S_ddot_y = rrrrs_a_p_y + rrrrs_u_1_y
+        rrrrs_S_ddot_z = rrrrs_a_p_z + rrrrs_u_1_z
         rrrrs_S_ddot_in_axes4_x = (
         axis_x_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_x_rrrrs_axes4_y*rrrrs_S_ddot_y +
             axis_x_rrrrs_axes4_z*rrrrs_S_ddot_z
@@ -9330,31 +9362,32 @@ def _run_legs(m, X, V, A):
         rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_c_3 -
-            rrrrs_W_2_in_axes2_xz*rrrrs_s_3
+        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_27
         )
         rrrrs_beta_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_c_3 -
-            rrrrs_W_2_in_axes2_yz*rrrrs_s_3
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_27
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
         )
         # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        rrrrs_zeta_4_in_axes4_x = rrrrs_omega_1_in_axes4_y*rrrrs_qd_4
         rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*rrrrs_qd_4
         # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
         rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
         # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_in_axes2_x = rrrrs_c_2*rrrrs_joint2_offset_x
-        rrrrs_d_2_in_axes2_y = -rrrrs_joint2_offset_x*rrrrs_s_2
+        rrrrs_d_2_in_axes2_x = rrrrs_h_3_t_6*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x + rrrrs_d_2_in_axes2_y*rrrrs_s_3
-        rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y - rrrrs_d_2_in_axes2_x*rrrrs_s_3
+        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_27
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
-        rrrrs_bias_t_5 = rrrrs_c_3*rrrrs_joint3_offset_x
-        rrrrs_bias_t_6 = rrrrs_joint3_offset_x*rrrrs_s_3
+        rrrrs_bias_t_5 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_bias_t_6 = rrrrs_h_3_t_27*rrrrs_joint3_offset_x
         rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
         rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
         rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
@@ -9393,24 +9426,29 @@ def _run_legs(m, X, V, A):
         rrrrs_qdd_1 = rrrrs_rel_in_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-qdd_3) acceleration of joint 3
         rrrrs_qdd_3 = rrrrs_rel_in_axes4_x*rrrrs_w_3_in_axes4_x
+        # (rrrrs-qdd_4) acceleration of joint 4
+        rrrrs_qdd_4 = (
+        rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y - rrrrs_qdd_3*rrrrs_r_3_in_axes4_x)
+        )
         # (rrrrs-alpha_1) angular acceleration of link 1
-        rrrrs_alpha_1_in_axes2_x = rrrrs_c_2*rrrrs_qdd_1
-        rrrrs_alpha_1_in_axes2_y = -rrrrs_qdd_1*rrrrs_s_2
+        rrrrs_alpha_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qdd_1
+        rrrrs_alpha_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qdd_1
         # (rrrrs-alpha_2) angular acceleration of link 2
         rrrrs_alpha_2_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_in_axes2_x
         rrrrs_alpha_2_in_axes2_y = rrrrs_alpha_1_in_axes2_y - rrrrs_W_2_in_axes2_xz
         # (rrrrs-B_2) acceleration tensor of link 2
+        rrrrs_B_2_in_axes2_xy = rrrrs_W_2_in_axes2_xy - rrrrs_ydd_2
         rrrrs_B_2_in_axes2_yx = rrrrs_W_2_in_axes2_xy + rrrrs_ydd_2
         rrrrs_B_2_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_in_axes2_y
         rrrrs_B_2_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x
         # (rrrrs-alpha_3) angular acceleration of link 3
         rrrrs_alpha_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_in_axes2_x*rrrrs_c_3 +
-            rrrrs_alpha_2_in_axes2_y*rrrrs_s_3
+        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_26 +
+            rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_27
         )
         rrrrs_alpha_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_c_3 -
-            rrrrs_alpha_2_in_axes2_x*rrrrs_s_3
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_26 -
+            rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_27
         )
         rrrrs_alpha_3_in_axes3_z = rrrrs_qdd_3 + rrrrs_ydd_2
         # (rrrrs-B_3) acceleration tensor of link 3
@@ -9422,16 +9460,13 @@ def _run_legs(m, X, V, A):
         rrrrs_B_3_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_in_axes3_x
         # (rrrrs-alpha_4) angular acceleration of link 4
         rrrrs_alpha_4_in_axes4_x = (
-        rrrrs_alpha_3_in_axes3_x*rrrrs_c_4 + rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 -
+        rrrrs_zeta_4_in_axes4_x + rrrrs_alpha_3_in_axes3_x*rrrrs_c_4 -
             rrrrs_alpha_3_in_axes3_y*rrrrs_s_4_t
         )
         rrrrs_alpha_4_in_axes4_y = (
         rrrrs_alpha_3_in_axes3_x*rrrrs_s_4_t + rrrrs_alpha_3_in_axes3_y*rrrrs_c_4 - rrrrs_zeta_4_t
         )
-        rrrrs_alpha_4_in_axes4_z = (
-        rrrrs_alpha_3_in_axes3_z + rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y -
-            rrrrs_qdd_3*rrrrs_r_3_in_axes4_x)
-        )
+        rrrrs_alpha_4_in_axes4_z = rrrrs_alpha_3_in_axes3_z + rrrrs_qdd_4
         # (rrrrs-B_4) acceleration tensor of link 4
         rrrrs_B_4_in_axes4_xy = rrrrs_W_1_in_axes4_xy - rrrrs_alpha_4_in_axes4_z
         rrrrs_B_4_in_axes4_xz = rrrrs_W_4_in_axes4_xz + rrrrs_alpha_4_in_axes4_y
@@ -9444,45 +9479,53 @@ def _run_legs(m, X, V, A):
         rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
         rrrrs_a_o_3_in_axes2_y = rrrrs_B_2_in_axes2_yx*rrrrs_joint3_offset_x
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_27
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
-        rrrrs_g_in_axes2_x = rrrrs_c_2*rrrrs_g_in_axes1_z + rrrrs_g_in_axes1_x*rrrrs_s_2
-        rrrrs_g_in_axes2_y = rrrrs_c_2*rrrrs_g_in_axes1_x - rrrrs_g_in_axes1_z*rrrrs_s_2
+        rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*rrrrs_h_3_t_7 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_6
+        rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*rrrrs_h_3_t_6 - rrrrs_g_in_axes1_z*rrrrs_h_3_t_7
+        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_27
         rrrrs_acc_3_in_axes3_x = (
-        rrrrs_a_o_3_in_axes2_x*rrrrs_c_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_s_3 -
-            rrrrs_c_3*rrrrs_g_in_axes2_x - rrrrs_g_in_axes2_y*rrrrs_s_3
+        rrrrs_acc_3_t_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_27 - rrrrs_g_in_axes3_x
         )
         rrrrs_acc_3_in_axes3_y = (
-        rrrrs_a_o_3_in_axes2_y*rrrrs_c_3 + rrrrs_g_in_axes2_x*rrrrs_s_3 -
-            rrrrs_a_o_3_in_axes2_x*rrrrs_s_3 - rrrrs_c_3*rrrrs_g_in_axes2_y
+        rrrrs_acc_3_t_4 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_y
         )
         rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
         # (rrrrs-f_3) inertia force of link 3 less its weight
         rrrrs_f_3_t = rrrrs_omega_1_t*rrrrs_omega_1_t
         rrrrs_f_3_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
+        rrrrs_f_3_t_5 = rrrrs_h_3_in_spec3_z*(rrrrs_f_3_t + rrrrs_f_3_t_2)
         rrrrs_f_3_in_axes3_z = (
         rrrrs_B_3_in_axes3_zx*rrrrs_h_3_in_spec3_x + rrrrs_B_3_in_axes3_zy*rrrrs_h_3_in_spec3_y +
-            rrrrs_acc_3_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_t +
-            rrrrs_f_3_t_2)
+            rrrrs_acc_3_in_axes3_z*rrrrs_link3_mass - rrrrs_f_3_t_5
         )
         # (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity
-        rrrrs_acc_4_in_axes4_x = (
-        rrrrs_S_ddot_in_axes4_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y
-            - axis_x_rrrrs_axes4_z*gravity_z
+        rrrrs_g_in_axes4_x = (
+        axis_x_rrrrs_axes4_x*gravity_x + axis_x_rrrrs_axes4_y*gravity_y +
+            axis_x_rrrrs_axes4_z*gravity_z
         )
-        rrrrs_acc_4_in_axes4_y = (
-        rrrrs_S_ddot_in_axes4_y - axis_y_rrrrs_axes4_x*gravity_x - axis_y_rrrrs_axes4_y*gravity_y
-            - axis_y_rrrrs_axes4_z*gravity_z
+        rrrrs_g_in_axes4_y = (
+        axis_y_rrrrs_axes4_x*gravity_x + axis_y_rrrrs_axes4_y*gravity_y +
+            axis_y_rrrrs_axes4_z*gravity_z
         )
-        rrrrs_acc_4_in_axes4_z = (
-        rrrrs_S_ddot_in_axes4_z - axis_z_rrrrs_axes4_x*gravity_x - axis_z_rrrrs_axes4_y*gravity_y
-            - axis_z_rrrrs_axes4_z*gravity_z
+        rrrrs_g_in_axes4_z = (
+        axis_z_rrrrs_axes4_x*gravity_x + axis_z_rrrrs_axes4_y*gravity_y +
+            axis_z_rrrrs_axes4_z*gravity_z
         )
+        rrrrs_acc_4_in_axes4_x = rrrrs_S_ddot_in_axes4_x - rrrrs_g_in_axes4_x
+        rrrrs_acc_4_in_axes4_y = rrrrs_S_ddot_in_axes4_y - rrrrs_g_in_axes4_y
+        rrrrs_acc_4_in_axes4_z = rrrrs_S_ddot_in_axes4_z - rrrrs_g_in_axes4_z
         # (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        rrrrs_mu_4_t = rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2 - rrrrs_W_4_t)
+        rrrrs_mu_4_t_2 = rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t - rrrrs_W_4_t)
+        rrrrs_mu_4_t_3 = rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t - rrrrs_W_1_t_2)
         rrrrs_mu_4_in_axes4_x = (
-        rrrrs_B_4_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
-            rrrrs_B_4_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy + rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2
-            - rrrrs_W_4_t) + rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_y -
+        rrrrs_mu_4_t + rrrrs_B_4_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
+            rrrrs_B_4_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy +
+            rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_y -
             rrrrs_B_4_in_axes4_yz*rrrrs_Sigma_4_in_axes4_zz -
             rrrrs_B_4_in_axes4_zx*rrrrs_J_4_in_spec4_xy -
             rrrrs_acc_4_in_axes4_y*rrrrs_h_4_in_spec4_z
@@ -9490,24 +9533,27 @@ def _run_legs(m, X, V, A):
         rrrrs_mu_4_in_axes4_y = (
         rrrrs_B_4_in_axes4_xz*rrrrs_Sigma_4_in_axes4_zz +
             rrrrs_B_4_in_axes4_zy*rrrrs_J_4_in_spec4_xy +
-            rrrrs_acc_4_in_axes4_x*rrrrs_h_4_in_spec4_z -
+            rrrrs_acc_4_in_axes4_x*rrrrs_h_4_in_spec4_z - rrrrs_mu_4_t_2 -
             rrrrs_B_4_in_axes4_xy*rrrrs_J_4_in_spec4_yz -
-            rrrrs_B_4_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx - rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t -
-            rrrrs_W_4_t) - rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_x
+            rrrrs_B_4_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx -
+            rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_x
         )
         rrrrs_mu_4_in_axes4_z = (
-        rrrrs_B_4_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
-            rrrrs_B_4_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx + rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t -
-            rrrrs_W_1_t_2) + rrrrs_acc_4_in_axes4_y*rrrrs_h_4_in_spec4_x -
+        rrrrs_mu_4_t_3 + rrrrs_B_4_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
+            rrrrs_B_4_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx +
+            rrrrs_acc_4_in_axes4_y*rrrrs_h_4_in_spec4_x -
             rrrrs_B_4_in_axes4_xy*rrrrs_Sigma_4_in_axes4_yy -
             rrrrs_B_4_in_axes4_yz*rrrrs_J_4_in_spec4_xz -
             rrrrs_acc_4_in_axes4_x*rrrrs_h_4_in_spec4_y
         )
         # (rrrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        rrrrs_mu_3_t = rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_t_2 - rrrrs_bias_t_2)
+        rrrrs_mu_3_t_2 = rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_t - rrrrs_bias_t_2)
+        rrrrs_mu_3_t_3 = rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_t - rrrrs_f_3_t_2)
         rrrrs_mu_3_in_axes3_x = (
-        rrrrs_B_3_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
-            rrrrs_B_3_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy + rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_t_2
-            - rrrrs_bias_t_2) + rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_y -
+        rrrrs_mu_3_t + rrrrs_B_3_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
+            rrrrs_B_3_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy +
+            rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_y -
             rrrrs_B_3_in_axes3_yz*rrrrs_Sigma_3_in_axes3_zz -
             rrrrs_B_3_in_axes3_zx*rrrrs_J_3_in_spec3_xy -
             rrrrs_acc_3_in_axes3_y*rrrrs_h_3_in_spec3_z
@@ -9515,15 +9561,15 @@ def _run_legs(m, X, V, A):
         rrrrs_mu_3_in_axes3_y = (
         rrrrs_B_3_in_axes3_xz*rrrrs_Sigma_3_in_axes3_zz +
             rrrrs_B_3_in_axes3_zy*rrrrs_J_3_in_spec3_xy +
-            rrrrs_acc_3_in_axes3_x*rrrrs_h_3_in_spec3_z -
+            rrrrs_acc_3_in_axes3_x*rrrrs_h_3_in_spec3_z - rrrrs_mu_3_t_2 -
             rrrrs_B_3_in_axes3_xy*rrrrs_J_3_in_spec3_yz -
-            rrrrs_B_3_in_axes3_zx*rrrrs_Sigma_3_in_axes3_xx - rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_t -
-            rrrrs_bias_t_2) - rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_x
+            rrrrs_B_3_in_axes3_zx*rrrrs_Sigma_3_in_axes3_xx -
+            rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_x
         )
         rrrrs_mu_3_in_axes3_z = (
-        rrrrs_B_3_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
-            rrrrs_B_3_in_axes3_yx*rrrrs_Sigma_3_in_axes3_xx + rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_t -
-            rrrrs_f_3_t_2) + rrrrs_acc_3_in_axes3_y*rrrrs_h_3_in_spec3_x -
+        rrrrs_mu_3_t_3 + rrrrs_B_3_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
+            rrrrs_B_3_in_axes3_yx*rrrrs_Sigma_3_in_axes3_xx +
+            rrrrs_acc_3_in_axes3_y*rrrrs_h_3_in_spec3_x -
             rrrrs_B_3_in_axes3_xy*rrrrs_Sigma_3_in_axes3_yy -
             rrrrs_B_3_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
             rrrrs_acc_3_in_axes3_x*rrrrs_h_3_in_spec3_y
@@ -9539,56 +9585,65 @@ def _run_legs(m, X, V, A):
         )
         rrrrs_N_3_in_axes3_z = rrrrs_mu_3_in_axes3_z + rrrrs_mu_4_in_axes4_z
         # (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrrs_mu_2_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x
+        rrrrs_mu_2_t_2 = rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t - rrrrs_bias_t)
+        rrrrs_mu_2_t_3 = rrrrs_J_2_in_spec2_xz*(rrrrs_mu_2_t - rrrrs_bias_t)
+        rrrrs_mu_2_t_5 = (
+        rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_y - rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z
+        )
+        rrrrs_mu_2_t_6 = (
+        rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z - rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_x
+        )
         rrrrs_mu_2_in_axes2_x = (
-        rrrrs_B_2_in_axes2_yx*rrrrs_J_2_in_spec2_xz +
-            rrrrs_B_2_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy + rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t
-            - rrrrs_bias_t) + rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_in_axes2_x +
-            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z - rrrrs_B_2_in_axes2_zx*rrrrs_J_2_in_spec2_xy
-            - rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_y
+        rrrrs_mu_2_t_2 + rrrrs_B_2_in_axes2_yx*rrrrs_J_2_in_spec2_xz +
+            rrrrs_B_2_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy +
+            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_in_axes2_x - rrrrs_mu_2_t_5 -
+            rrrrs_B_2_in_axes2_zx*rrrrs_J_2_in_spec2_xy
         )
         rrrrs_mu_2_in_axes2_y = (
         rrrrs_B_2_in_axes2_zy*rrrrs_J_2_in_spec2_xy +
-            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_in_axes2_y +
-            rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_x -
-            rrrrs_B_2_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
-            rrrrs_J_2_in_spec2_xz*(rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x -
-            rrrrs_bias_t) - rrrrs_J_2_in_spec2_yz*(rrrrs_W_2_in_axes2_xy - rrrrs_ydd_2) -
-            rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z
+            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_in_axes2_y - rrrrs_mu_2_t_3 - rrrrs_mu_2_t_6 -
+            rrrrs_B_2_in_axes2_xy*rrrrs_J_2_in_spec2_yz -
+            rrrrs_B_2_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx
         )
         # (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_in_axes2_x = (
-        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_c_3 - rrrrs_N_3_in_axes3_y*rrrrs_s_3
+        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_26 -
+            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_27
         )
         rrrrs_N_2_in_axes2_y = (
-        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_s_3 + rrrrs_N_3_in_axes3_y*rrrrs_c_3 -
-            rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
+        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_27 +
+            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_26 - rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
         )
         # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrrrs_mu_1_in_axes1_z = (
-        rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1 + rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z -
-            rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y
+        rrrrs_mu_1_t = (
+        rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y - rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z
         )
+        rrrrs_mu_1_in_axes1_z = rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1 - rrrrs_mu_1_t
         # (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrrs_N_1_in_axes1_z = (
-        rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_c_2 - rrrrs_N_2_in_axes2_y*rrrrs_s_2
+        rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_h_3_t_6 -
+            rrrrs_N_2_in_axes2_y*rrrrs_h_3_t_7
         )
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*rrrrs_w_4_in_axes4_y
+        rrrrs_G_in_axes4_x = (
+        -rrrrs_w_3_in_axes4_x*(rrrrs_G_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_in_axes3_z)
+        )
         # (rrrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_c_t = rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x
+        rrrrs_c_t_2 = rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t)
+        rrrrs_c_t_3 = rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2)
         rrrrs_c_in_axes4_x = (
-        rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x +
-            rrrrs_w_3_in_axes4_x*(rrrrs_G_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_in_axes3_z)
-            - rrrrs_B_4_in_axes4_xy*rrrrs_h_4_in_spec4_y -
+        rrrrs_c_t - rrrrs_G_in_axes4_x - rrrrs_B_4_in_axes4_xy*rrrrs_h_4_in_spec4_y -
             rrrrs_B_4_in_axes4_xz*rrrrs_h_4_in_spec4_z
         )
         rrrrs_c_in_axes4_y = (
-        rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t) - rrrrs_G_in_axes4_y -
-            rrrrs_B_4_in_axes4_yx*rrrrs_h_4_in_spec4_x -
+        rrrrs_c_t_2 - rrrrs_G_in_axes4_y - rrrrs_B_4_in_axes4_yx*rrrrs_h_4_in_spec4_x -
             rrrrs_B_4_in_axes4_yz*rrrrs_h_4_in_spec4_z
         )
         rrrrs_c_in_axes4_z = (
-        rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2) -
-            rrrrs_B_4_in_axes4_zx*rrrrs_h_4_in_spec4_x -
+        rrrrs_c_t_3 - rrrrs_B_4_in_axes4_zx*rrrrs_h_4_in_spec4_x -
             rrrrs_B_4_in_axes4_zy*rrrrs_h_4_in_spec4_y - rrrrs_N_1_in_axes1_z*rrrrs_w_1_in_axes4_z
         )
         # (rrrrs-c_true) leg force on the platform without actuation, the last link's mass included
@@ -9611,10 +9666,10 @@ def _run_legs(m, X, V, A):
             axis_z_rrrrs_axes4_z*rrrrs_c_true_in_axes4_z
         )
         ok = (
-        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
-            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
-            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
-            _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
+            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
         # (rrrrs-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_rrrrs[0][leg]] = rrrrs_c_true_x
@@ -9632,20 +9687,20 @@ def _run_legs(m, X, V, A):
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
             rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
-            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
-            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
-            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
+            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
+            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
             rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
             rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -9655,56 +9710,52 @@ def _run_legs(m, X, V, A):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
         rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
@@ -9719,10 +9770,10 @@ def _run_legs(m, X, V, A):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -9779,8 +9830,8 @@ def _run_legs(m, X, V, A):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
         rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
         rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
@@ -9792,14 +9843,10 @@ def _run_legs(m, X, V, A):
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
         rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
-        # (rrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y
-        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z
-        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x
         # (rrrs-S_ddot) acceleration of the connection point
-        rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
-        rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
-        rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_S_ddot_x = t_ddot_x + B_p_xy*rrrs_q_y + B_p_xz*rrrs_q_z - W_p_t_4*rrrs_q_x
+        rrrs_S_ddot_y = t_ddot_y + B_p_yx*rrrs_q_x + B_p_yz*rrrs_q_z - W_p_t_5*rrrs_q_y
+        rrrs_S_ddot_z = t_ddot_z + B_p_zx*rrrs_q_x + B_p_zy*rrrs_q_y - W_p_t_6*rrrs_q_z
         rrrs_S_ddot_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
             axis_x_rrrs_axes3_z*rrrs_S_ddot_z
@@ -9816,12 +9863,13 @@ def _run_legs(m, X, V, A):
         rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -9859,9 +9907,11 @@ def _run_legs(m, X, V, A):
         rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-qdd_2) acceleration of joint 2
         rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x
+        # (rrrs-qdd_3) acceleration of joint 3
+        rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_in_axes2_x = rrrs_c_2*rrrs_qdd_1
-        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
+        rrrs_alpha_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1
+        rrrs_alpha_1_t = rrrs_h_2_t_20*rrrs_qdd_1
         # (rrrs-alpha_2) angular acceleration of link 2
         rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_in_axes2_x
         rrrs_alpha_2_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_t
@@ -9872,15 +9922,13 @@ def _run_legs(m, X, V, A):
         rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x
         # (rrrs-alpha_3) angular acceleration of link 3
         rrrs_alpha_3_in_axes3_x = (
-        rrrs_alpha_2_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+        rrrs_zeta_3_in_axes3_x + rrrs_alpha_2_in_axes2_x*rrrs_c_3 -
             rrrs_alpha_2_in_axes2_y*rrrs_s_3_t
         )
         rrrs_alpha_3_in_axes3_y = (
         rrrs_alpha_2_in_axes2_x*rrrs_s_3_t + rrrs_alpha_2_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t
         )
-        rrrs_alpha_3_in_axes3_z = (
-        rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
-        )
+        rrrs_alpha_3_in_axes3_z = rrrs_qdd_2 + rrrs_qdd_3
         # (rrrs-B_3) acceleration tensor of link 3
         rrrs_B_3_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z
         rrrs_B_3_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y
@@ -9889,39 +9937,45 @@ def _run_legs(m, X, V, A):
         rrrs_B_3_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y
         rrrs_B_3_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x
         # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_in_axes3_x = (
-        rrrs_S_ddot_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_x = (
+        axis_x_rrrs_axes3_x*gravity_x + axis_x_rrrs_axes3_y*gravity_y +
             axis_x_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_in_axes3_y = (
-        rrrs_S_ddot_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_y = (
+        axis_y_rrrs_axes3_x*gravity_x + axis_y_rrrs_axes3_y*gravity_y +
             axis_y_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_in_axes3_z = (
-        rrrs_S_ddot_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+        rrrs_g_in_axes3_z = (
+        axis_z_rrrs_axes3_x*gravity_x + axis_z_rrrs_axes3_y*gravity_y +
             axis_z_rrrs_axes3_z*gravity_z
         )
+        rrrs_acc_3_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_g_in_axes3_x
+        rrrs_acc_3_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_g_in_axes3_y
+        rrrs_acc_3_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_g_in_axes3_z
         # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
         rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
         rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_t_4 = rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_5 = rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t - rrrs_mu_3_t_3)
+        rrrs_mu_3_t_6 = rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2)
         rrrs_mu_3_in_axes3_x = (
-        rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz + rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy
-            + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3) +
+        rrrs_mu_3_t_4 + rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+            rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
             rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
             rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
             rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z
         )
         rrrs_mu_3_in_axes3_y = (
         rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz + rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy
-            + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z -
+            + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z - rrrs_mu_3_t_5 -
             rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
-            rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x
+            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx -
+            rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x
         )
         rrrs_mu_3_in_axes3_z = (
-        rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz + rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx
-            + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2) +
+        rrrs_mu_3_t_6 + rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx +
             rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
             rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y
@@ -9932,27 +9986,36 @@ def _run_legs(m, X, V, A):
         rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
-        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
+        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
+        rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
+        rrrs_mu_2_t_9 = (
+        rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z
+        )
+        rrrs_mu_2_t_10 = (
+        rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z - rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x
+        )
+        rrrs_mu_2_t_11 = (
+        rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y
+        )
         rrrs_mu_2_in_axes2_x = (
-        rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz + rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy
-            + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5) +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_x +
-            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y
+        rrrs_mu_2_t_6 + rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+            rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_x - rrrs_mu_2_t_9 -
+            rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy
         )
         rrrs_mu_2_in_axes2_y = (
-        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy + rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x -
+        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy - rrrs_mu_2_t_10 - rrrs_mu_2_t_7 -
             rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
-            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_5) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t -
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
+            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t
         )
         rrrs_mu_2_in_axes2_z = (
-        rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_4) + rrrs_J_2_in_spec2_xz*rrrs_alpha_1_in_axes2_x +
-            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y - rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy
-            - rrrs_J_2_in_spec2_yz*rrrs_alpha_1_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
+        rrrs_mu_2_t_8 + rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_in_axes2_x - rrrs_mu_2_t_11 -
+            rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy - rrrs_J_2_in_spec2_yz*rrrs_alpha_1_t
         )
         # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_in_axes2_x = (
@@ -9963,30 +10026,33 @@ def _run_legs(m, X, V, A):
         )
         rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z
         # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_in_axes1_z = (
-        rrrs_J_1_in_spec1_xx*rrrs_qdd_1 + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
-            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
+        rrrs_mu_1_t = (
+        rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z
         )
+        rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_mu_1_t
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_in_axes1_z = (
-        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_c_2 - rrrs_N_2_in_axes2_y*rrrs_s_2
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_h_2_t_19 -
+            rrrs_N_2_in_axes2_y*rrrs_h_2_t_20
         )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_t = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3)
+        rrrs_c_t_2 = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3)
+        rrrs_c_t_3 = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2)
         rrrs_c_in_axes3_x = (
-        rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
-            rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_in_axes2_z) -
-            rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y - rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z
+        rrrs_c_t + rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x -
+            rrrs_N_2_in_axes2_z) - rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_in_axes3_y = (
-        rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) - rrrs_G_in_axes3_y -
-            rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z
+        rrrs_c_t_2 - rrrs_G_in_axes3_y - rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
         rrrs_c_in_axes3_z = (
-        rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
-            rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
-            rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z
+        rrrs_c_t_3 - rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y - rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z
         )
         # (rrrs-c_true) leg force on the platform without actuation, the last link's mass included
         rrrs_c_true_in_axes3_x = rrrs_c_in_axes3_x - rrrs_acc_3_in_axes3_x*rrrs_link3_mass
@@ -10005,8 +10071,8 @@ def _run_legs(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z
         )
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -10072,12 +10138,14 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
+    gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
+        m_star*t_z)
     )
     potential_rrrrs, = [0.0] * 1
     for leg, k in legs[0]:
@@ -10099,18 +10167,18 @@ def _run_potential(m, X):
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         # (rrrrs-h_3) first moment of link 3 about the origin of link 3
-        rrrrs_h_3_t_3 = (
-        t_x + R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
-            R_xz*rrrrs_platform_point_z - rrrrs_base_point_x
+        rrrrs_q_x = (
+        R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        rrrrs_h_3_t_4 = (
-        t_y + R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y +
-            R_yz*rrrrs_platform_point_z - rrrrs_base_point_y
+        rrrrs_q_y = (
+        R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        rrrrs_h_3_t_5 = (
-        t_z + R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y +
-            R_zz*rrrrs_platform_point_z - rrrrs_base_point_z
+        rrrrs_q_z = (
+        R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
+        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
         rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
         rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
         rrrrs_h_3_t_8 = (
@@ -10121,51 +10189,56 @@ def _run_potential(m, X):
         rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
             rrrrs_base_frame_zz*rrrrs_h_3_t_5
         )
-        rrrrs_h_3_t_10 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
-        rrrrs_h_3_t_11 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_10)
-        rrrrs_h_3_t_12 = (
+        rrrrs_h_3_t_10 = (
         rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zx*rrrrs_h_3_t_5 - rrrrs_joint2_offset_x
+            rrrrs_base_frame_zx*rrrrs_h_3_t_5
         )
-        rrrrs_h_3_t_13 = rrrrs_h_3_t_11*rrrrs_h_3_t_6 - rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_14 = (
-        rrrrs_h_3_t_11*rrrrs_h_3_t_7 + rrrrs_h_3_t_12*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
-        )
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_13*rrrrs_h_3_t_13 + rrrrs_h_3_t_14*rrrrs_h_3_t_14
-        rrrrs_h_3_t_16 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_15 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_14*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_13*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
+        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
+        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
+        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
         rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
-        rrrrs_h_3_t_20 = rrrrs_h_3_t_19 - rrrrs_h_3_t_16*rrrrs_h_3_t_16
-        rrrrs_h_3_t_21 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_20)
-        inv_rrrrs_h_3_t_19 = 1.0/rrrrs_h_3_t_19
-        rrrrs_h_3_t_22 = (
-        inv_rrrrs_h_3_t_19*(rrrrs_h_3_t_16*rrrrs_h_3_t_17 - rrrrs_h_3_t_18*rrrrs_h_3_t_21)
+        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
+        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
+        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
+        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
         )
-        rrrrs_h_3_t_23 = (
-        inv_rrrrs_h_3_t_19*(rrrrs_h_3_t_16*rrrrs_h_3_t_18 + rrrrs_h_3_t_17*rrrrs_h_3_t_21)
+        rrrrs_h_3_t_27 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
         )
         rrrrs_h_3_in_axes2_x = (
-        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_22 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_23
+        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_26 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_27
         )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_h_3_t_10 = 1.0/rrrrs_h_3_t_10
-        rrrrs_c_1 = inv_rrrrs_h_3_t_10*rrrrs_h_3_t_11*rrrrs_h_3_t_8
+        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
+        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_h_3_t_10*rrrrs_h_3_t_11*rrrrs_h_3_t_9
+        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_16*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_21*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
+        # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
+        rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
         # (rrrrs-P_c_3) force that accelerates joint 3, per unit
         rrrrs_P_c_3_in_axes2_x = (
-        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_23 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_22
+        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_27 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_26
         )
         # (potential) potential energy
         rrrrs_b_in_spec1_y = rrrrs_c_1*rrrrs_potential_t + rrrrs_potential_t_2*rrrrs_s_1
@@ -10173,10 +10246,10 @@ def _run_potential(m, X):
         rrrrs_potential_t_5 = rrrrs_c_4*rrrrs_h_4_in_spec4_x + rrrrs_h_4_in_spec4_y*rrrrs_s_4_t
         rrrrs_potential_t_6 = rrrrs_c_4*rrrrs_h_4_in_spec4_y - rrrrs_h_4_in_spec4_x*rrrrs_s_4_t
         rrrrs_potential_t_7 = (
-        rrrrs_h_3_t_22*rrrrs_potential_t_5 - rrrrs_h_3_t_23*rrrrs_potential_t_6
+        rrrrs_h_3_t_26*rrrrs_potential_t_5 - rrrrs_h_3_t_27*rrrrs_potential_t_6
         )
         rrrrs_potential_t_8 = (
-        rrrrs_h_3_t_22*rrrrs_potential_t_6 + rrrrs_h_3_t_23*rrrrs_potential_t_5
+        rrrrs_h_3_t_26*rrrrs_potential_t_6 + rrrrs_h_3_t_27*rrrrs_potential_t_5
         )
         rrrrs_potential_t_9 = (
         rrrrs_h_1_in_spec1_x + rrrrs_potential_t_3 + rrrrs_potential_t_4 +
@@ -10195,15 +10268,14 @@ def _run_potential(m, X):
             rrrrs_P_c_3_in_axes2_x*rrrrs_h_3_t_6
         )
         rrrrs_potential_t_11 = (
-        rrrrs_g_in_axes1_z*rrrrs_potential_t_9 + rrrrs_potential_t_10*(rrrrs_acc_3_t*rrrrs_c_1 +
-            rrrrs_acc_3_t_2*rrrrs_s_1) + (rrrrs_acc_3_t_2*rrrrs_c_1 -
-            rrrrs_acc_3_t*rrrrs_s_1)*(rrrrs_h_1_in_spec1_z + rrrrs_h_2_in_spec2_z +
-            rrrrs_h_3_in_spec3_z + rrrrs_h_4_in_spec4_z + rrrrs_b_in_spec1_z*rrrrs_link1_mass +
-            rrrrs_b_in_spec1_z*rrrrs_link2_mass + rrrrs_b_in_spec1_z*rrrrs_link3_mass)
+        rrrrs_g_in_axes1_x*rrrrs_potential_t_10 + rrrrs_g_in_axes1_y*(rrrrs_h_1_in_spec1_z +
+            rrrrs_h_2_in_spec2_z + rrrrs_h_3_in_spec3_z + rrrrs_h_4_in_spec4_z +
+            rrrrs_b_in_spec1_z*rrrrs_link1_mass + rrrrs_b_in_spec1_z*rrrrs_link2_mass +
+            rrrrs_b_in_spec1_z*rrrrs_link3_mass) + rrrrs_g_in_axes1_z*rrrrs_potential_t_9
         )
         ok = (
-        ok & (abs(rrrrs_h_3_t_10) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_19) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_20 >=
+        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
             0.0)
         )
         # (potential) potential energy
@@ -10211,104 +10283,102 @@ def _run_potential(m, X):
     potential_t_2, = [0.0] * 1
     for leg, k in legs[1]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
-            rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_3_in_spec3_x,
-            rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_link1_mass, rrrs_link2_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
+            rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
+            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+            rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
             rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
             rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2, rrrs_potential_t_3,
             rrrs_potential_t_4, rrrs_rho2_2_t, rrrs_size_t_3,
         ) = k
-        # (rrrs-S) from the base point to the connection point
-        rrrs_S_x = (
-        t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
-            - rrrs_base_point_x
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        rrrs_q_x = (
+        R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_S_y = (
-        t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
-            - rrrs_base_point_y
+        rrrs_q_y = (
+        R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_S_z = (
-        t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
-            - rrrs_base_point_z
+        rrrs_q_z = (
+        R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
+        )
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_in_axes1_z = (
+        rrrs_h_2_in_spec2_x*rrrs_h_2_t_19 - rrrs_h_2_in_spec2_y*rrrs_h_2_t_20
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx -
-            rrrs_joint2_offset_x
-        )
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
+        # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
+        rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
         # (potential) potential energy
         rrrs_b_in_spec1_y = rrrs_c_1*rrrs_potential_t + rrrs_potential_t_2*rrrs_s_1
         rrrs_b_in_spec1_z = rrrs_c_1*rrrs_potential_t_2 - rrrs_potential_t*rrrs_s_1
         rrrs_potential_t_5 = rrrs_c_3*rrrs_h_3_in_spec3_x + rrrs_h_3_in_spec3_y*rrrs_s_3_t
         rrrs_potential_t_6 = rrrs_c_3*rrrs_h_3_in_spec3_y - rrrs_h_3_in_spec3_x*rrrs_s_3_t
         rrrs_potential_t_7 = (
-        (rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1)*(rrrs_h_1_in_spec1_y +
-            rrrs_b_in_spec1_y*rrrs_link1_mass + rrrs_b_in_spec1_y*rrrs_link2_mass +
-            rrrs_c_2*rrrs_h_2_in_spec2_y + rrrs_c_2*rrrs_potential_t_6 +
-            rrrs_h_2_in_spec2_x*rrrs_s_2 + rrrs_potential_t_5*rrrs_s_2)
-        )
-        rrrs_potential_t_8 = (
-        rrrs_potential_t_7 + rrrs_g_in_axes1_z*(rrrs_h_1_in_spec1_x + rrrs_potential_t_3 +
-            rrrs_potential_t_4 + rrrs_c_2*rrrs_h_2_in_spec2_x + rrrs_c_2*rrrs_potential_t_5 -
-            rrrs_h_2_in_spec2_y*rrrs_s_2 - rrrs_potential_t_6*rrrs_s_2) + (rrrs_c_1*rrrs_mu_2_t_2
-            - rrrs_mu_2_t*rrrs_s_1)*(rrrs_h_1_in_spec1_z + rrrs_h_2_in_spec2_z +
-            rrrs_h_3_in_spec3_z + rrrs_b_in_spec1_z*rrrs_link1_mass +
-            rrrs_b_in_spec1_z*rrrs_link2_mass)
+        rrrs_g_in_axes1_x*(rrrs_h_1_in_spec1_y + rrrs_b_in_spec1_y*rrrs_link1_mass +
+            rrrs_b_in_spec1_y*rrrs_link2_mass + rrrs_h_2_in_spec2_x*rrrs_h_2_t_20 +
+            rrrs_h_2_in_spec2_y*rrrs_h_2_t_19 + rrrs_h_2_t_19*rrrs_potential_t_6 +
+            rrrs_h_2_t_20*rrrs_potential_t_5) + rrrs_g_in_axes1_y*(rrrs_h_1_in_spec1_z +
+            rrrs_h_2_in_spec2_z + rrrs_h_3_in_spec3_z + rrrs_b_in_spec1_z*rrrs_link1_mass +
+            rrrs_b_in_spec1_z*rrrs_link2_mass) + rrrs_g_in_axes1_z*(rrrs_h_1_in_spec1_x +
+            rrrs_h_2_in_axes1_z + rrrs_potential_t_3 + rrrs_potential_t_4 +
+            rrrs_h_2_t_19*rrrs_potential_t_5 - rrrs_h_2_t_20*rrrs_potential_t_6)
         )
         ok = (
-        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0)
+        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0)
         )
         # (potential) potential energy
-        potential_t_2 += rrrs_potential_t_8
+        potential_t_2 += rrrs_potential_t_7
     # (potential) potential energy
     potential = potential_rrrrs - potential_t - potential_t_2
     # (potential) potential energy
@@ -10381,7 +10451,7 @@ def _run_condition(m, X):
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
-        # (rrrrs-S) from the base point to the connection point
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -10391,90 +10461,80 @@ def _run_condition(m, X):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_S_in_turn1_x = (
-        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
-            rrrrs_S_z*rrrrs_base_frame_zy
+        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
+        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
+        rrrrs_h_3_t_8 = (
+        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zy*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_y = (
-        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
-            rrrrs_S_z*rrrrs_base_frame_zz
+        rrrrs_h_3_t_9 = (
+        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zz*rrrrs_h_3_t_5
         )
-        rrrrs_S_in_turn1_z = (
-        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
-            rrrrs_S_z*rrrrs_base_frame_zx
+        rrrrs_h_3_t_10 = (
+        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zx*rrrrs_h_3_t_5
         )
-        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrrs_s_2 = sin(rrrrs_y_2_extra)
-        # (rrrrs-rho2_1) squared amplitude
-        rrrrs_rho2_1 = (
-        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
+        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
+        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
+        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
+        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
+        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
+        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
+        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
+        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
         )
-        # (rrrrs-root_1) root, with the sign of the branch
-        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        rrrrs_h_3_t_27 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
+        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
+        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
-        # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_in_axes2_x = rrrrs_x_2_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z
-        rrrrs_x_2_t_2 = rrrrs_c_2*rrrrs_root_1
-        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 - rrrrs_s_2*rrrrs_x_2_in_axes1_z
-        # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
-        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t = (
-        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
-        )
-        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
-        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
-        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
-        # (rrrrs-rho2_3) squared amplitude
-        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
-        # (rrrrs-disc_3) discriminant
-        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
-        # (rrrrs-root_3) root, with the sign of the branch
-        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
-        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
-        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
         rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
-        rrrrs_r_3_in_axes4_y = (
-        rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_platform_joint_offset_x*rrrrs_s_4_t
-        )
+        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
+        # (rrrrs-r_2) from joint 2 to the connection point, along the links
+        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
+        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
-        rrrrs_v_1_t_3 = rrrrs_x_2_t + rrrrs_S_in_turn1_z*rrrrs_c_2
-        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 - rrrrs_S_in_turn1_z*rrrrs_s_2
-        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
+        rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
+        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
-        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
-            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
-            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
+            rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
         )
         # (rrrrs-w_1) reciprocal vector 1
         axis_z_rrrrs_axes4_x = rrrrs_base_frame_xz*rrrrs_c_1 - rrrrs_base_frame_xy*rrrrs_s_1
@@ -10485,10 +10545,10 @@ def _run_condition(m, X):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
-        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
-        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
-        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
+        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
         rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
@@ -10503,27 +10563,23 @@ def _run_condition(m, X):
         rrrrs_base_frame_zx*rrrrs_w_3_t_3 + rrrrs_base_frame_zy*rrrrs_w_3_t_5 +
             rrrrs_base_frame_zz*rrrrs_w_3_t_6
         )
+        axis_x_rrrrs_axes4_x = (
+        axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
+        )
+        axis_x_rrrrs_axes4_y = (
+        axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x - axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z
+        )
+        axis_x_rrrrs_axes4_z = (
+        axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
+        )
         rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
-        rrrrs_w_3_t_7 = (
-        rrrrs_w_3_in_axes4_x*(rrrrs_c_4*(rrrrs_c_3*rrrrs_x_2_in_axes2_y -
-            rrrrs_s_3*rrrrs_x_2_in_axes2_x) + rrrrs_s_4_t*(rrrrs_c_3*rrrrs_x_2_in_axes2_x +
-            rrrrs_s_3*rrrrs_x_2_in_axes2_y))
-        )
-        rrrrs_w_3_x = (
-        rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z -
-            axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y)
-        )
-        rrrrs_w_3_y = (
-        rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x -
-            axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z)
-        )
-        rrrrs_w_3_z = (
-        rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y -
-            axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x)
-        )
+        rrrrs_w_3_t_7 = rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_x = axis_x_rrrrs_axes4_x*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_y = axis_x_rrrrs_axes4_y*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_z = axis_x_rrrrs_axes4_z*rrrrs_w_3_in_axes4_x
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rrrrs_pivot_size = abs(rrrrs_rho2_1)
-        rrrrs_pivot_size_2 = abs(rrrrs_rho2_3)
+        rrrrs_pivot_size = abs(rrrrs_h_3_t_11)
+        rrrrs_pivot_size_2 = abs(rrrrs_h_3_t_23)
         rrrrs_pivot_size_3 = abs(rrrrs_v_1_in_axes4_z)
         rrrrs_pivot_size_4 = abs(rrrrs_r_3_in_axes4_y)
         rrrrs_least_pivots = (
@@ -10548,12 +10604,12 @@ def _run_condition(m, X):
             rrrrs_spread_t_3*rrrrs_spread_t_3
         )
         clear = (
-        clear & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) &
+        clear & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) &
             (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
             _TOLERANCE * rrrrs_size)
         )
-        reached = reached & (rrrrs_disc_3 >= 0.0)
+        reached = reached & (rrrrs_h_3_t_24 >= 0.0)
         # (spread) rms distance of the platform points from their centroid
         spread_rrrrs += rrrrs_spread_t_4
         # (rrrrs-w_1) reciprocal vector 1
@@ -10578,20 +10634,19 @@ def _run_condition(m, X):
         out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrrrs[0][leg]] = rrrrs_least_pivots
-        out_reach[_reach_rrrrs[0][leg]] = rrrrs_disc_3
+        out_reach[_reach_rrrrs[0][leg]] = rrrrs_h_3_t_24
     spread_rrrs, = [0.0] * 1
     for leg, k in legs[1]:
         (
         inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
-            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size, rrrs_size_t_3,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-S) from the base point to the connection point
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -10601,67 +10656,62 @@ def _run_condition(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_S_in_turn1_x = (
-        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
+        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_h_2_t_6 = (
+        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
+            rrrs_base_frame_zy*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_y = (
-        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
+        rrrs_h_2_t_7 = (
+        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
+            rrrs_base_frame_zz*rrrs_h_2_t_5
         )
-        rrrs_S_in_turn1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        rrrs_h_2_t_8 = (
+        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
+            rrrs_base_frame_zx*rrrs_h_2_t_5
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
-        # (rrrs-root_1) root, with the sign of the branch
-        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
+        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
+        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
+        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
+        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
+        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
+        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
+        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
+        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
+        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
+        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
+        rrrs_h_2_t_19 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
+        )
+        rrrs_h_2_t_20 = (
+        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
+        )
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
+        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
+        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
-        # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
-        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
-        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
-        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
-        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
-        # (rrrs-disc_2) discriminant
-        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
-        # (rrrs-root_2) root, with the sign of the branch
-        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_y = (
-        rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t
-        )
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
-        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -10689,22 +10739,22 @@ def _run_condition(m, X):
         rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
             rrrs_base_frame_zz*rrrs_w_2_t_2
         )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
-        rrrs_w_2_x = (
-        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y)
-        )
-        rrrs_w_2_y = (
-        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z)
-        )
-        rrrs_w_2_z = (
-        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x)
-        )
+        rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
+        rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
+        rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rrrs_pivot_size = abs(rrrs_rho2_1)
-        rrrs_pivot_size_2 = abs(rrrs_rho2_2)
+        rrrs_pivot_size = abs(rrrs_h_2_t_9)
+        rrrs_pivot_size_2 = abs(rrrs_h_2_t_16)
         rrrs_pivot_size_3 = abs(rrrs_v_1_in_axes3_z)
         rrrs_pivot_size_4 = abs(rrrs_r_2_in_axes3_y)
         rrrs_least_pivots = (
@@ -10729,11 +10779,12 @@ def _run_condition(m, X):
             rrrs_spread_t_3*rrrs_spread_t_3
         )
         clear = (
-        clear & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE *
-            rrrs_size) & (abs(rrrs_r_2_in_axes3_y) > _TOLERANCE * rrrs_size)
+        clear & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
+            (abs(rrrs_h_2_t_16) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) &
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size)
         )
-        reached = reached & (rrrs_disc_2 >= 0.0)
+        reached = reached & (rrrs_h_2_t_17 >= 0.0)
         # (spread) rms distance of the platform points from their centroid
         spread_rrrs += rrrs_spread_t_4
         # (rrrs-w_1) reciprocal vector 1
@@ -10754,7 +10805,7 @@ def _run_condition(m, X):
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrrs[0][leg]] = rrrs_least_pivots
-        out_reach[_reach_rrrs[0][leg]] = rrrs_disc_2
+        out_reach[_reach_rrrs[0][leg]] = rrrs_h_2_t_17
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(0.3333333333333333*spread_rrrrs + 0.3333333333333333*spread_rrrs)
     # (spread) rms distance of the platform points from their centroid
@@ -10883,12 +10934,12 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[[0, 1, 2, 4, 5, 7, 8]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
-    gap = _wrapped(subtract_1, [0, 1, 2, 3, 4, 5, 6])
-    return (gap,)
+    residual = _wrapped(subtract_1, [0, 1, 2, 3, 4, 5, 6])
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -10897,7 +10948,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

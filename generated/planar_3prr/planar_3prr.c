@@ -144,9 +144,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -208,6 +208,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -256,7 +280,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -266,7 +290,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -279,7 +303,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -296,16 +320,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -313,7 +337,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1138,42 +1171,43 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real W_p_xx, R_xx, R_yx, h_star_x, h_star_y;
+    real W_p_xx, R_xx, R_yx, h_star_x, h_star_y, f_p_t, f_p_t_2;
 } values;
 
 INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
 {
     /* (W_p) centripetal tensor of the platform */
     const real omega_z = V[2*w + k];
-    const real W_p_xx = -omega_z*omega_z;
-    v->W_p_xx = W_p_xx;
+    v->W_p_xx = -omega_z*omega_z;
 }
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
     /* X: named entries */
     const real X_2 = X[2*w + k];
-    const real R_xx = cosine(X_2);
-    const real R_yx = sine(X_2);
+    v->R_xx = cosine(X_2);
+    v->R_yx = sine(X_2);
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x - R_yx*m->h_star_in_platform_y;
-    const real h_star_y = R_xx*m->h_star_in_platform_y + R_yx*m->h_star_in_platform_x;
-    v->R_xx = R_xx;
-    v->R_yx = R_yx;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
+    v->h_star_x = v->R_xx*m->h_star_in_platform_x - v->R_yx*m->h_star_in_platform_y;
+    v->h_star_y = v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x;
+}
+
+INLINE void stage_V_X(values *v)
+{
+    /* (f_p) inertia force of the platform less its weight */
+    v->f_p_t = -v->W_p_xx*v->h_star_x;
+    v->f_p_t_2 = -v->W_p_xx*v->h_star_y;
 }
 
 typedef struct {
-    real prr_q_x, prr_q_y, prr_S_x, prr_S_y, prr_disc_1, prr_c_2, prr_s_2, prr_v_2_in_axes0_x,
-        prr_v_2_in_axes0_y, axis_y_prr_axes2_x, axis_x_prr_axes2_x, prr_w_1_t, prr_w_1_t_2,
-        prr_w_1_in_axes2_x, prr_w_1_in_axes2_y, prr_w_1_x, prr_w_1_y, prr_a_p_x, prr_a_p_y,
-        prr_S_dot_t, prr_S_dot_t_2, prr_S_dot_x, prr_S_dot_y, prr_qd_2_t, prr_W_2_t, prr_S_ddot_x,
-        prr_S_ddot_y, prr_S_ddot_in_axes2_y, prr_H_a_1_z, prr_w_2_in_axes2_y,
-        prr_d_Gamma_2_in_axes2_y, prr_d_Gamma_1_in_axes2_y, prr_d_c_in_axes2_xx, prr_d_c_in_axes2_xy,
-        prr_u_1_in_axes2_x, prr_u_1_in_axes2_y, prr_acc_2_o_in_axes2_x, prr_acc_2_o_in_axes2_y,
-        prr_q_1_t, prr_q_1, prr_acc_2_in_axes2_x, prr_acc_2_in_axes2_y, prr_c_in_axes2_x,
-        prr_c_in_axes2_y;
+    real prr_q_x, prr_q_y, prr_S_in_axes0_x, prr_disc_1, prr_q_1_t, prr_c_2, prr_s_2,
+        prr_v_2_in_axes0_x, prr_v_2_in_axes0_y, axis_y_prr_axes2_x, axis_x_prr_axes2_x, prr_w_1_t,
+        prr_w_1_in_axes2_x, prr_w_1_in_axes2_y, prr_w_1_x, prr_w_1_y, prr_g_in_axes2_x,
+        prr_g_in_axes2_y, prr_H_a_1_z, prr_a_p_x, prr_a_p_y, prr_S_dot_t, prr_S_dot_t_2, prr_S_dot_x,
+        prr_S_dot_y, prr_qd_1_t, prr_bias_t, prr_c_t, prr_c_t_2, prr_S_ddot_in_axes2_x,
+        prr_S_ddot_in_axes2_y, prr_qdd_1_t, prr_qdd_1, prr_Q_xx, prr_Q_xy, prr_Q_yy, prr_M_ta_t,
+        prr_M_ta_t_2, prr_M_aa_t, prr_U_x, prr_U_y, prr_Z_a_t, prr_acc_2_in_axes2_x,
+        prr_acc_2_in_axes2_y, prr_c_in_axes2_x, prr_c_in_axes2_y;
 } values_prr;
 
 INLINE void stage_prr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1182,58 +1216,47 @@ INLINE void stage_prr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (prr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real prr_q_x = R_xx*m->prr_platform_point_x[i] - R_yx*m->prr_platform_point_y[i];
-    const real prr_q_y = R_xx*m->prr_platform_point_y[i] + R_yx*m->prr_platform_point_x[i];
+    v->prr_q_x = R_xx*m->prr_platform_point_x[i] - R_yx*m->prr_platform_point_y[i];
+    v->prr_q_y = R_xx*m->prr_platform_point_y[i] + R_yx*m->prr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real prr_S_x = t_x - m->prr_base_point_x[i] + prr_q_x;
+    const real prr_S_x = t_x - m->prr_base_point_x[i] + v->prr_q_x;
     const real t_y = X[1*w + j];
-    const real prr_S_y = t_y - m->prr_base_point_y[i] + prr_q_y;
-    const real prr_S_in_axes0_x = prr_S_x*m->prr_base_frame_xx[i] +
-        prr_S_y*m->prr_base_frame_yx[i];
+    const real prr_S_y = t_y - m->prr_base_point_y[i] + v->prr_q_y;
+    v->prr_S_in_axes0_x = prr_S_x*m->prr_base_frame_xx[i] + prr_S_y*m->prr_base_frame_yx[i];
     /* (prr-disc_1) discriminant of the distance equation */
     const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-    const real prr_disc_1 = m->prr_size_t[i] + prr_S_in_axes0_x*prr_S_in_axes0_x -
-        prr_disc_1_t;
+    v->prr_disc_1 = m->prr_size_t[i] + v->prr_S_in_axes0_x*v->prr_S_in_axes0_x - prr_disc_1_t;
+    /* (prr-q_1) displacement of joint 1 */
+    v->prr_q_1_t = -m->prr_branch_1[i]*root(v->prr_disc_1);
     /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real prr_c_2 =
-        -m->inv_prr_size_t[i]*m->prr_branch_1[i]*root(prr_disc_1)*m->prr_platform_joint_offset_x[i];
+    v->prr_c_2 = m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*v->prr_q_1_t;
     /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real prr_s_2 =
+    v->prr_s_2 =
         m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*(prr_S_x*m->prr_base_frame_xy[i]
         + prr_S_y*m->prr_base_frame_yy[i]);
     /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-    const real prr_v_2_in_axes0_x = -m->prr_platform_joint_offset_x[i]*prr_s_2;
-    const real prr_v_2_in_axes0_y = prr_c_2*m->prr_platform_joint_offset_x[i];
+    v->prr_v_2_in_axes0_x = -m->prr_platform_joint_offset_x[i]*v->prr_s_2;
+    v->prr_v_2_in_axes0_y = v->prr_c_2*m->prr_platform_joint_offset_x[i];
     /* (prr-w_1) reciprocal vector 1 */
-    const real axis_y_prr_axes2_x = m->prr_base_frame_xy[i]*prr_c_2 -
-        m->prr_base_frame_xx[i]*prr_s_2;
-    const real axis_x_prr_axes2_x = m->prr_base_frame_yy[i]*prr_c_2 -
-        m->prr_base_frame_yx[i]*prr_s_2;
-    const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
-    const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
-    const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
-    const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2;
-    const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
-        axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
-    const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
-        axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
-    v->prr_q_x = prr_q_x;
-    v->prr_q_y = prr_q_y;
-    v->prr_S_x = prr_S_x;
-    v->prr_S_y = prr_S_y;
-    v->prr_disc_1 = prr_disc_1;
-    v->prr_c_2 = prr_c_2;
-    v->prr_s_2 = prr_s_2;
-    v->prr_v_2_in_axes0_x = prr_v_2_in_axes0_x;
-    v->prr_v_2_in_axes0_y = prr_v_2_in_axes0_y;
-    v->axis_y_prr_axes2_x = axis_y_prr_axes2_x;
-    v->axis_x_prr_axes2_x = axis_x_prr_axes2_x;
-    v->prr_w_1_t = prr_w_1_t;
-    v->prr_w_1_t_2 = prr_w_1_t_2;
-    v->prr_w_1_in_axes2_x = prr_w_1_in_axes2_x;
-    v->prr_w_1_in_axes2_y = prr_w_1_in_axes2_y;
-    v->prr_w_1_x = prr_w_1_x;
-    v->prr_w_1_y = prr_w_1_y;
+    v->axis_y_prr_axes2_x = m->prr_base_frame_xy[i]*v->prr_c_2 -
+        m->prr_base_frame_xx[i]*v->prr_s_2;
+    v->axis_x_prr_axes2_x = m->prr_base_frame_yy[i]*v->prr_c_2 -
+        m->prr_base_frame_yx[i]*v->prr_s_2;
+    v->prr_w_1_t = -1/v->prr_v_2_in_axes0_y;
+    const real prr_w_1_t_2 = v->prr_v_2_in_axes0_x*v->prr_w_1_t;
+    v->prr_w_1_in_axes2_x = v->prr_c_2 + v->prr_s_2*prr_w_1_t_2;
+    v->prr_w_1_in_axes2_y = v->prr_c_2*prr_w_1_t_2 - v->prr_s_2;
+    v->prr_w_1_x = v->axis_x_prr_axes2_x*v->prr_w_1_in_axes2_x +
+        v->axis_y_prr_axes2_x*v->prr_w_1_in_axes2_y;
+    v->prr_w_1_y = v->axis_x_prr_axes2_x*v->prr_w_1_in_axes2_y -
+        v->axis_y_prr_axes2_x*v->prr_w_1_in_axes2_x;
+    /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->prr_g_in_axes2_x = m->prr_g_in_axes0_y[i]*v->prr_s_2 +
+        v->prr_c_2*m->prr_g_in_axes0_x[i];
+    v->prr_g_in_axes2_y = v->prr_c_2*m->prr_g_in_axes0_y[i] -
+        m->prr_g_in_axes0_x[i]*v->prr_s_2;
+    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+    v->prr_H_a_1_z = v->prr_q_x*v->prr_w_1_y - v->prr_q_y*v->prr_w_1_x;
 }
 
 INLINE void stage_prr_A_X(size_t w, size_t j, const real *A, values_prr *v)
@@ -1241,11 +1264,9 @@ INLINE void stage_prr_A_X(size_t w, size_t j, const real *A, values_prr *v)
     /* (prr-a_p) acceleration of the connection point without its centripetal part */
     const real alpha_z = A[2*w + j];
     const real t_ddot_x = A[0*w + j];
-    const real prr_a_p_x = t_ddot_x - alpha_z*v->prr_q_y;
+    v->prr_a_p_x = t_ddot_x - alpha_z*v->prr_q_y;
     const real t_ddot_y = A[1*w + j];
-    const real prr_a_p_y = t_ddot_y + alpha_z*v->prr_q_x;
-    v->prr_a_p_x = prr_a_p_x;
-    v->prr_a_p_y = prr_a_p_y;
+    v->prr_a_p_y = t_ddot_y + alpha_z*v->prr_q_x;
 }
 
 INLINE void stage_prr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1253,23 +1274,23 @@ INLINE void stage_prr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
 {
     /* (prr-S_dot) velocity of the connection point */
     const real omega_z = V[2*w + j];
-    const real prr_S_dot_t = omega_z*v->prr_q_y;
-    const real prr_S_dot_t_2 = omega_z*v->prr_q_x;
+    v->prr_S_dot_t = omega_z*v->prr_q_y;
+    v->prr_S_dot_t_2 = omega_z*v->prr_q_x;
     const real t_dot_x = V[0*w + j];
-    const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
+    v->prr_S_dot_x = t_dot_x - v->prr_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real prr_S_dot_y = t_dot_y + prr_S_dot_t_2;
-    /* (prr-qd_2) rate of joint 2 */
-    const real prr_qd_2_t = v->prr_w_1_t*(prr_S_dot_x*m->prr_base_frame_xy[i] +
-        prr_S_dot_y*m->prr_base_frame_yy[i]);
+    v->prr_S_dot_y = t_dot_y + v->prr_S_dot_t_2;
+    /* (prr-qd_1) rate of joint 1 */
+    v->prr_qd_1_t = v->prr_w_1_t*(v->prr_S_dot_x*m->prr_base_frame_xy[i] +
+        v->prr_S_dot_y*m->prr_base_frame_yy[i]);
     /* (prr-W_2) centripetal tensor of link 2 */
-    const real prr_W_2_t = prr_qd_2_t*prr_qd_2_t;
-    v->prr_S_dot_t = prr_S_dot_t;
-    v->prr_S_dot_t_2 = prr_S_dot_t_2;
-    v->prr_S_dot_x = prr_S_dot_x;
-    v->prr_S_dot_y = prr_S_dot_y;
-    v->prr_qd_2_t = prr_qd_2_t;
-    v->prr_W_2_t = prr_W_2_t;
+    const real prr_W_2_t = v->prr_qd_1_t*v->prr_qd_1_t;
+    /* (prr-bias) acceleration of the connection point at zero joint accelerations */
+    v->prr_bias_t = m->prr_platform_joint_offset_x[i]*v->prr_qd_1_t*v->prr_qd_1_t;
+    /* (prr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->prr_c_t = prr_W_2_t*m->prr_h_2_in_spec2_x[i];
+    v->prr_c_t_2 = prr_W_2_t*m->prr_h_2_in_spec2_y[i];
 }
 
 INLINE void stage_prr_A_V_X(size_t w, size_t j, const real *V, values_prr *v)
@@ -1278,28 +1299,17 @@ INLINE void stage_prr_A_V_X(size_t w, size_t j, const real *V, values_prr *v)
     const real omega_z = V[2*w + j];
     const real prr_S_ddot_x = v->prr_a_p_x - omega_z*v->prr_S_dot_t_2;
     const real prr_S_ddot_y = v->prr_a_p_y - omega_z*v->prr_S_dot_t;
-    const real prr_S_ddot_in_axes2_y = v->axis_x_prr_axes2_x*prr_S_ddot_y +
+    v->prr_S_ddot_in_axes2_x = v->axis_x_prr_axes2_x*prr_S_ddot_x -
+        v->axis_y_prr_axes2_x*prr_S_ddot_y;
+    v->prr_S_ddot_in_axes2_y = v->axis_x_prr_axes2_x*prr_S_ddot_y +
         v->axis_y_prr_axes2_x*prr_S_ddot_x;
-    v->prr_S_ddot_x = prr_S_ddot_x;
-    v->prr_S_ddot_y = prr_S_ddot_y;
-    v->prr_S_ddot_in_axes2_y = prr_S_ddot_in_axes2_y;
-}
-
-INLINE void stage_prr_H_condition(const prepared *m, size_t i, values_prr *v)
-{
-    /* (prr-w_1) reciprocal vector 1 */
-    const real prr_w_1_t = m->prr_platform_joint_offset_x[i]*v->prr_s_2/v->prr_v_2_in_axes0_y;
-    const real prr_w_1_in_axes2_x = v->prr_c_2 + v->prr_s_2*prr_w_1_t;
-    const real prr_w_1_in_axes2_y = v->prr_c_2*prr_w_1_t - v->prr_s_2;
-    const real prr_w_1_x = v->axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
-        v->axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
-    const real prr_w_1_y = v->axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
-        v->axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    const real prr_H_a_1_z = v->prr_q_x*prr_w_1_y - v->prr_q_y*prr_w_1_x;
-    v->prr_w_1_x = prr_w_1_x;
-    v->prr_w_1_y = prr_w_1_y;
-    v->prr_H_a_1_z = prr_H_a_1_z;
+    /* (prr-rel) acceleration of the connection point left to the joint accelerations */
+    const real prr_rel_in_axes2_x = v->prr_S_ddot_in_axes2_x + v->prr_bias_t;
+    /* (prr-qdd_1) acceleration of joint 1 */
+    v->prr_qdd_1_t = v->prr_w_1_t*(v->prr_S_ddot_in_axes2_y*v->prr_c_2 +
+        prr_rel_in_axes2_x*v->prr_s_2);
+    v->prr_qdd_1 = v->prr_c_2*prr_rel_in_axes2_x - v->prr_S_ddot_in_axes2_y*v->prr_s_2 +
+        v->prr_qdd_1_t*v->prr_v_2_in_axes0_x;
 }
 
 INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
@@ -1326,129 +1336,124 @@ INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
         v->prr_w_1_in_axes2_x*(v->prr_c_2*m->prr_link1_mass[i] + prr_d_Gamma_1_t*v->prr_s_2);
     const real prr_d_c_in_axes2_xy = m->prr_h_2_in_spec2_y[i]*prr_w_2_in_axes2_y +
         prr_d_Gamma_2_in_axes2_y*prr_w_2_t - prr_d_Gamma_1_in_axes2_y*v->prr_w_1_in_axes2_x;
-    v->prr_w_2_in_axes2_y = prr_w_2_in_axes2_y;
-    v->prr_d_Gamma_2_in_axes2_y = prr_d_Gamma_2_in_axes2_y;
-    v->prr_d_Gamma_1_in_axes2_y = prr_d_Gamma_1_in_axes2_y;
-    v->prr_d_c_in_axes2_xx = prr_d_c_in_axes2_xx;
-    v->prr_d_c_in_axes2_xy = prr_d_c_in_axes2_xy;
+    /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real prr_Q_t = m->prr_h_2_in_spec2_x[i]*prr_w_2_in_axes2_y +
+        prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y +
+        prr_d_Gamma_1_in_axes2_y*v->prr_w_1_in_axes2_y + prr_d_c_in_axes2_xx;
+    const real prr_Q_t_2 = R(0.5)*prr_Q_t;
+    const real prr_Q_t_3 = v->axis_y_prr_axes2_x*prr_Q_t_2 -
+        v->axis_x_prr_axes2_x*prr_d_c_in_axes2_xy;
+    const real prr_Q_t_4 = v->axis_y_prr_axes2_x*prr_d_c_in_axes2_xy +
+        v->axis_x_prr_axes2_x*prr_Q_t_2;
+    v->prr_Q_xx = 2*v->axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx;
+    v->prr_Q_xy = v->axis_x_prr_axes2_x*prr_Q_t_3 + v->axis_y_prr_axes2_x*prr_Q_t_4;
+    v->prr_Q_yy = 2*v->axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx;
+    /* (M_ta) coupling block of M */
+    v->prr_M_ta_t = v->prr_Q_xy*v->prr_q_x - v->prr_Q_xx*v->prr_q_y;
+    v->prr_M_ta_t_2 = v->prr_Q_yy*v->prr_q_x - v->prr_Q_xy*v->prr_q_y;
+    /* (M_aa) rotational block of M */
+    v->prr_M_aa_t = v->prr_M_ta_t_2*v->prr_q_x - v->prr_M_ta_t*v->prr_q_y;
 }
 
-INLINE void stage_prr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+INLINE void stage_prr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *s,
     values_prr *v)
 {
     /* (prr-u_1) centripetal acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real prr_u_1_x = -omega_z*v->prr_S_dot_t_2;
-    const real prr_u_1_t = omega_z*v->prr_S_dot_t;
-    const real prr_u_1_in_axes2_x = v->axis_x_prr_axes2_x*prr_u_1_x +
-        v->axis_y_prr_axes2_x*prr_u_1_t;
-    const real prr_u_1_in_axes2_y = v->axis_y_prr_axes2_x*prr_u_1_x -
-        v->axis_x_prr_axes2_x*prr_u_1_t;
+    const real W_p_xx = s[2*w + j];
+    const real prr_u_1_x = W_p_xx*v->prr_q_x;
+    const real prr_u_1_y = W_p_xx*v->prr_q_y;
+    const real prr_u_1_in_axes2_x = v->axis_x_prr_axes2_x*prr_u_1_x -
+        v->axis_y_prr_axes2_x*prr_u_1_y;
+    const real prr_u_1_in_axes2_y = v->axis_x_prr_axes2_x*prr_u_1_y +
+        v->axis_y_prr_axes2_x*prr_u_1_x;
+    /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x + v->prr_bias_t;
+    /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real prr_B_2_o_in_axes2_xy = v->prr_w_1_t*(v->prr_c_2*prr_u_1_in_axes2_y +
+        prr_rel_o_in_axes2_x*v->prr_s_2);
+    /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
+    const real prr_acc_1_o_in_axes0_x = v->prr_c_2*prr_rel_o_in_axes2_x -
+        m->prr_g_in_axes0_x[i] - v->prr_s_2*prr_u_1_in_axes2_y +
+        prr_B_2_o_in_axes2_xy*v->prr_v_2_in_axes0_x;
+    /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
+    const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
     /* (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - m->prr_g_in_axes0_y[i]*v->prr_s_2
-        - v->prr_c_2*m->prr_g_in_axes0_x[i];
-    const real prr_acc_2_o_in_axes2_y = m->prr_g_in_axes0_x[i]*v->prr_s_2 -
-        v->prr_c_2*m->prr_g_in_axes0_y[i] + prr_u_1_in_axes2_y;
-    v->prr_u_1_in_axes2_x = prr_u_1_in_axes2_x;
-    v->prr_u_1_in_axes2_y = prr_u_1_in_axes2_y;
-    v->prr_acc_2_o_in_axes2_x = prr_acc_2_o_in_axes2_x;
-    v->prr_acc_2_o_in_axes2_y = prr_acc_2_o_in_axes2_y;
-}
-
-INLINE void stage_prr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_prr *v)
-{
-    /* (prr-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_yx = s[1*w + j];
-    const real t_x = X[0*w + j];
-    const real prr_S_x = t_x - m->prr_base_point_x[i] + R_xx*m->prr_platform_point_x[i] -
-        R_yx*m->prr_platform_point_y[i];
-    const real t_y = X[1*w + j];
-    const real prr_S_y = t_y - m->prr_base_point_y[i] + R_xx*m->prr_platform_point_y[i] +
-        R_yx*m->prr_platform_point_x[i];
-    const real prr_S_in_axes0_x = prr_S_x*m->prr_base_frame_xx[i] +
-        prr_S_y*m->prr_base_frame_yx[i];
-    /* (prr-disc_1) discriminant of the distance equation */
-    const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-    const real prr_disc_1 = m->prr_size_t[i] + prr_S_in_axes0_x*prr_S_in_axes0_x -
-        prr_disc_1_t;
-    /* (prr-q_1) displacement of joint 1 */
-    const real prr_q_1_t = -m->prr_branch_1[i]*root(prr_disc_1);
-    const real prr_q_1 = prr_S_in_axes0_x - prr_q_1_t;
-    v->prr_S_x = prr_S_x;
-    v->prr_S_y = prr_S_y;
-    v->prr_disc_1 = prr_disc_1;
-    v->prr_q_1_t = prr_q_1_t;
-    v->prr_q_1 = prr_q_1;
+    const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - v->prr_g_in_axes2_x;
+    const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y - v->prr_g_in_axes2_y;
+    /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real prr_mu_2_o_in_axes2_z = prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
+        prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
+        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
+    /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real prr_c_o_t = v->prr_w_1_t*(prr_mu_2_o_in_axes2_z -
+        prr_f_1_o_in_axes0_x*v->prr_v_2_in_axes0_x);
+    const real prr_c_o_in_axes2_x = v->prr_c_t -
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v->prr_c_2*prr_f_1_o_in_axes0_x +
+        prr_c_o_t*v->prr_s_2;
+    const real prr_c_o_in_axes2_y = v->prr_c_t_2 +
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v->prr_s_2 +
+        v->prr_c_2*prr_c_o_t;
+    /* (prr-U) velocity and gravity terms of the leg force */
+    v->prr_U_x = -v->axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
+        v->axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
+    v->prr_U_y = v->axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
+        v->axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
+    /* (Z_a) rotational part of Z */
+    v->prr_Z_a_t = v->prr_U_y*v->prr_q_x - v->prr_U_x*v->prr_q_y;
 }
 
 INLINE void stage_prr_legs_required(const prepared *m, size_t i, values_prr *v)
 {
-    /* (prr-S_ddot) acceleration of the connection point */
-    const real prr_S_ddot_in_axes2_x = v->axis_x_prr_axes2_x*v->prr_S_ddot_x -
-        v->axis_y_prr_axes2_x*v->prr_S_ddot_y;
-    /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-    const real prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x +
-        m->prr_platform_joint_offset_x[i]*v->prr_qd_2_t*v->prr_qd_2_t;
-    /* (prr-B_2) acceleration tensor of link 2 */
-    const real prr_B_2_in_axes2_xy = v->prr_w_1_t*(v->prr_S_ddot_in_axes2_y*v->prr_c_2 +
-        prr_rel_in_axes2_x*v->prr_s_2);
     /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_in_axes0_x = v->prr_c_2*prr_rel_in_axes2_x - m->prr_g_in_axes0_x[i] -
-        v->prr_S_ddot_in_axes2_y*v->prr_s_2 + prr_B_2_in_axes2_xy*v->prr_v_2_in_axes0_x;
+    const real prr_acc_1_in_axes0_x = v->prr_qdd_1 - m->prr_g_in_axes0_x[i];
     /* (prr-f_1) inertia force of link 1 less its weight */
     const real prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*m->prr_link1_mass[i];
     /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x -
-        m->prr_g_in_axes0_y[i]*v->prr_s_2 - v->prr_c_2*m->prr_g_in_axes0_x[i];
-    const real prr_acc_2_in_axes2_y = m->prr_g_in_axes0_x[i]*v->prr_s_2 -
-        v->prr_c_2*m->prr_g_in_axes0_y[i] + v->prr_S_ddot_in_axes2_y;
+    v->prr_acc_2_in_axes2_x = v->prr_S_ddot_in_axes2_x - v->prr_g_in_axes2_x;
+    v->prr_acc_2_in_axes2_y = v->prr_S_ddot_in_axes2_y - v->prr_g_in_axes2_y;
     /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real prr_mu_2_in_axes2_z = prr_acc_2_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        prr_acc_2_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
-        prr_B_2_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
+    const real prr_mu_2_in_axes2_z = v->prr_acc_2_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
+        v->prr_acc_2_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
+        m->prr_J_2_in_spec2_zz[i]*v->prr_qdd_1_t;
     /* (prr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real prr_c_t = v->prr_w_1_t*(prr_mu_2_in_axes2_z -
+    const real prr_c_t_3 = v->prr_w_1_t*(prr_mu_2_in_axes2_z -
         prr_f_1_in_axes0_x*v->prr_v_2_in_axes0_x);
-    const real prr_c_in_axes2_x = v->prr_W_2_t*m->prr_h_2_in_spec2_x[i] -
-        prr_B_2_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v->prr_c_2*prr_f_1_in_axes0_x +
-        prr_c_t*v->prr_s_2;
-    const real prr_c_in_axes2_y = v->prr_W_2_t*m->prr_h_2_in_spec2_y[i] +
-        prr_B_2_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_in_axes0_x*v->prr_s_2 +
-        v->prr_c_2*prr_c_t;
-    v->prr_acc_2_in_axes2_x = prr_acc_2_in_axes2_x;
-    v->prr_acc_2_in_axes2_y = prr_acc_2_in_axes2_y;
-    v->prr_c_in_axes2_x = prr_c_in_axes2_x;
-    v->prr_c_in_axes2_y = prr_c_in_axes2_y;
+    v->prr_c_in_axes2_x = v->prr_c_t - m->prr_h_2_in_spec2_y[i]*v->prr_qdd_1_t -
+        v->prr_c_2*prr_f_1_in_axes0_x + prr_c_t_3*v->prr_s_2;
+    v->prr_c_in_axes2_y = v->prr_c_t_2 + m->prr_h_2_in_spec2_x[i]*v->prr_qdd_1_t +
+        prr_f_1_in_axes0_x*v->prr_s_2 + v->prr_c_2*prr_c_t_3;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    values *v, real *s)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->h_star_x;
-    s[3*w + k] = v->h_star_y;
+    s[2*w + k] = v->W_p_xx;
+    s[3*w + k] = v->h_star_x;
+    s[4*w + k] = v->h_star_y;
 }
 
-INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
-    *s)
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
-    stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
-    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
+    const real Z_p_x = -m->Z_p_t - v->f_p_t;
+    const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
-    s[4*w + k] = Z_p_x;
-    s[5*w + k] = Z_p_y;
-    s[6*w + k] = Z_q_z;
+    s[5*w + k] = Z_p_x;
+    s[6*w + k] = Z_p_y;
+    s[7*w + k] = Z_q_z;
 }
 
 INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -1458,87 +1463,33 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_V_X(m, w, i, j, V, &v);
     stage_prr_M_dynamics(m, i, &v);
-    stage_prr_Z_dynamics(m, w, i, j, V, &v);
-    /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real prr_rel_o_in_axes2_x = v.prr_u_1_in_axes2_x +
-        m->prr_platform_joint_offset_x[i]*v.prr_qd_2_t*v.prr_qd_2_t;
-    /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real prr_B_2_o_in_axes2_xy = v.prr_w_1_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
-        prr_rel_o_in_axes2_x*v.prr_s_2);
-    /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_o_in_axes0_x = v.prr_c_2*prr_rel_o_in_axes2_x -
-        m->prr_g_in_axes0_x[i] - v.prr_s_2*v.prr_u_1_in_axes2_y +
-        prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x;
-    /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
-    const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
-    /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        v.prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
-    /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real prr_c_o_t = v.prr_w_1_t*(prr_mu_2_o_in_axes2_z -
-        prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
-    const real prr_c_o_in_axes2_x = v.prr_W_2_t*m->prr_h_2_in_spec2_x[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v.prr_c_2*prr_f_1_o_in_axes0_x +
-        prr_c_o_t*v.prr_s_2;
-    const real prr_c_o_in_axes2_y = v.prr_W_2_t*m->prr_h_2_in_spec2_y[i] +
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v.prr_s_2 +
-        v.prr_c_2*prr_c_o_t;
-    /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real prr_Q_t = m->prr_h_2_in_spec2_x[i]*v.prr_w_2_in_axes2_y +
-        v.prr_d_Gamma_2_in_axes2_y*v.prr_w_2_in_axes2_y +
-        v.prr_d_Gamma_1_in_axes2_y*v.prr_w_1_in_axes2_y + v.prr_d_c_in_axes2_xx;
-    const real prr_Q_t_2 = R(0.5)*prr_Q_t;
-    const real prr_Q_t_3 = v.axis_y_prr_axes2_x*prr_Q_t_2 -
-        v.axis_x_prr_axes2_x*v.prr_d_c_in_axes2_xy;
-    const real prr_Q_t_4 = v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy +
-        v.axis_x_prr_axes2_x*prr_Q_t_2;
-    const real prr_Q_xx = 2*v.axis_y_prr_axes2_x*prr_Q_t_3 - v.prr_d_c_in_axes2_xx;
-    const real prr_Q_xy = v.axis_x_prr_axes2_x*prr_Q_t_3 + v.axis_y_prr_axes2_x*prr_Q_t_4;
-    const real prr_Q_yy = 2*v.axis_x_prr_axes2_x*prr_Q_t_4 - v.prr_d_c_in_axes2_xx;
-    /* (prr-U) velocity and gravity terms of the leg force */
-    const real prr_U_x = -v.axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
-        v.axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
-    const real prr_U_y = v.axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
-        v.axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
-    /* (M_ta) coupling block of M */
-    const real prr_M_ta_t = prr_Q_xy*v.prr_q_x - prr_Q_xx*v.prr_q_y;
-    const real prr_M_ta_t_2 = prr_Q_yy*v.prr_q_x - prr_Q_xy*v.prr_q_y;
-    /* (M_aa) rotational block of M */
-    const real prr_M_aa_t = prr_M_ta_t_2*v.prr_q_x - prr_M_ta_t*v.prr_q_y;
-    /* (Z_a) rotational part of Z */
-    const real prr_Z_a_t = prr_U_y*v.prr_q_x - prr_U_x*v.prr_q_y;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    const real prr_H_a_1_z = v.prr_q_x*v.prr_w_1_y - v.prr_q_y*v.prr_w_1_x;
+    stage_prr_Z_dynamics(m, w, i, j, s, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, prr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, prr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, prr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, prr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, prr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, prr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.prr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.prr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.prr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v.prr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.prr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v.prr_M_aa_t);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[6*count + k], add, prr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, prr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[8*count + k], add, prr_Z_a_t);  /* Z_a_z_of_legs */
+    gather(&terms[6*count + k], add, v.prr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, v.prr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[8*count + k], add, v.prr_Z_a_t);  /* Z_a_z_of_legs */
     /* (prr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.prr_w_1_x;
     o[1*count + k] = v.prr_w_1_y;
-    /* (prr-H_a_1) */
-    o[2*count + k] = prr_H_a_1_z;
-    o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + prr_H_a_1_z);
+    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.prr_H_a_1_z;
+    o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + v.prr_H_a_1_z);
     o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
 INLINE void dynamics_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1549,7 +1500,7 @@ INLINE void dynamics_place_prr(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -1558,24 +1509,24 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[3*w + k];
+    const real h_star_y = s[4*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[2*w + k];
+    const real h_star_x = s[3*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
-    const real Z_p_x = s[4*w + k];
+    const real Z_p_x = s[5*w + k];
     const real Z_t_x_of_legs = sums[6*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[5*w + k];
+    const real Z_p_y = s[6*w + k];
     const real Z_t_y_of_legs = sums[7*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[8*w + k];
-    const real Z_q_z = s[6*w + k];
+    const real Z_q_z = s[7*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -1600,12 +1551,12 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
-    real s[7] = {0}, sums[9] = {0};
+    real s[8] = {0}, sums[9] = {0};
     real terms_prr[9*LEGS(LEGS_OF_prr)] = {0}, o_prr[6*LEGS(LEGS_OF_prr)] = {0};
     values v;
-    dynamics_before(m, 1, 0, X, &v, s);
+    dynamics_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         dynamics_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, terms_prr, o_prr);
     }
@@ -1615,19 +1566,19 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
-    dynamics_between(m, 1, 0, V, &v, s);
+    dynamics_between(m, 1, 0, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[7*LANES], sums[9*LANES];
+    real s[8*LANES], sums[9*LANES];
     real o_prr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s);
-        dynamics_between(m, LANES, k, V, &v, s);
+        dynamics_before(m, LANES, k, X, V, &v, s);
+        dynamics_between(m, LANES, k, &v, s);
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
@@ -1649,8 +1600,8 @@ INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, value
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->h_star_x;
-    s[3*w + k] = v->h_star_y;
+    s[3*w + k] = v->h_star_x;
+    s[4*w + k] = v->h_star_y;
 }
 
 INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -1659,45 +1610,27 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_M_dynamics(m, i, &v);
-    /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real prr_Q_t = m->prr_h_2_in_spec2_x[i]*v.prr_w_2_in_axes2_y +
-        v.prr_d_Gamma_2_in_axes2_y*v.prr_w_2_in_axes2_y +
-        v.prr_d_Gamma_1_in_axes2_y*(v.prr_c_2*v.prr_w_1_t_2 - v.prr_s_2) +
-        v.prr_d_c_in_axes2_xx;
-    const real prr_Q_t_2 = R(0.5)*prr_Q_t;
-    const real prr_Q_t_3 = v.axis_y_prr_axes2_x*prr_Q_t_2 -
-        v.axis_x_prr_axes2_x*v.prr_d_c_in_axes2_xy;
-    const real prr_Q_t_4 = v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy +
-        v.axis_x_prr_axes2_x*prr_Q_t_2;
-    const real prr_Q_xx = 2*v.axis_y_prr_axes2_x*prr_Q_t_3 - v.prr_d_c_in_axes2_xx;
-    const real prr_Q_xy = v.axis_x_prr_axes2_x*prr_Q_t_3 + v.axis_y_prr_axes2_x*prr_Q_t_4;
-    const real prr_Q_yy = 2*v.axis_x_prr_axes2_x*prr_Q_t_4 - v.prr_d_c_in_axes2_xx;
-    /* (M_ta) coupling block of M */
-    const real prr_M_ta_t = prr_Q_xy*v.prr_q_x - prr_Q_xx*v.prr_q_y;
-    const real prr_M_ta_t_2 = prr_Q_yy*v.prr_q_x - prr_Q_xy*v.prr_q_y;
-    /* (M_aa) rotational block of M */
-    const real prr_M_aa_t = prr_M_ta_t_2*v.prr_q_x - prr_M_ta_t*v.prr_q_y;
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, prr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, prr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, prr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, prr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, prr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, prr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.prr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.prr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.prr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v.prr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.prr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v.prr_M_aa_t);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
-INLINE void M_place_prr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_prr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -1706,10 +1639,10 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[3*w + k];
+    const real h_star_y = s[4*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[2*w + k];
+    const real h_star_x = s[3*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
@@ -1730,9 +1663,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[4] = {0}, sums[6] = {0};
+    real s[5] = {0}, sums[6] = {0};
     real terms_prr[6*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
     values v;
     M_before(m, 1, 0, X, &v, s);
@@ -1748,9 +1681,10 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
-    real s[4*LANES], sums[6*LANES];
+    real s[5*LANES], sums[6*LANES];
     real o_prr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -1771,24 +1705,27 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, values
+    *v, real *s)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->W_p_xx;
 }
 
-INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+INLINE void Z_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
-    stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
-    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
+    const real Z_p_x = -m->Z_p_t - v->f_p_t;
+    const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
-    s[2*w + k] = Z_p_x;
-    s[3*w + k] = Z_p_y;
-    s[4*w + k] = Z_q_z;
+    s[3*w + k] = Z_p_x;
+    s[4*w + k] = Z_p_y;
+    s[5*w + k] = Z_q_z;
 }
 
 INLINE void Z_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -1797,75 +1734,34 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_V_X(m, w, i, j, V, &v);
-    stage_prr_Z_dynamics(m, w, i, j, V, &v);
-    /* (prr-qd_2) rate of joint 2 */
-    const real prr_qd_2_t = -1/v.prr_v_2_in_axes0_y;
-    const real prr_qd_2_t_2 = prr_qd_2_t*(v.prr_S_dot_x*m->prr_base_frame_xy[i] +
-        v.prr_S_dot_y*m->prr_base_frame_yy[i]);
-    /* (prr-W_2) centripetal tensor of link 2 */
-    const real prr_W_2_t = prr_qd_2_t_2*prr_qd_2_t_2;
-    /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real prr_rel_o_in_axes2_x = v.prr_u_1_in_axes2_x +
-        m->prr_platform_joint_offset_x[i]*prr_qd_2_t_2*prr_qd_2_t_2;
-    /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real prr_B_2_o_in_axes2_xy = prr_qd_2_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
-        prr_rel_o_in_axes2_x*v.prr_s_2);
-    /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_o_in_axes0_x = v.prr_c_2*prr_rel_o_in_axes2_x -
-        m->prr_g_in_axes0_x[i] - v.prr_s_2*v.prr_u_1_in_axes2_y +
-        prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x;
-    /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
-    const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
-    /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        v.prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
-    /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z -
-        prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
-    const real prr_c_o_in_axes2_x = prr_W_2_t*m->prr_h_2_in_spec2_x[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v.prr_c_2*prr_f_1_o_in_axes0_x +
-        prr_c_o_t*v.prr_s_2;
-    const real prr_c_o_in_axes2_y = prr_W_2_t*m->prr_h_2_in_spec2_y[i] +
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v.prr_s_2 +
-        v.prr_c_2*prr_c_o_t;
-    /* (prr-U) velocity and gravity terms of the leg force */
-    const real prr_U_x = -v.axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
-        v.axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
-    const real prr_U_y = v.axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
-        v.axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
-    /* (Z_a) rotational part of Z */
-    const real prr_Z_a_t = prr_U_y*v.prr_q_x - prr_U_x*v.prr_q_y;
+    stage_prr_Z_dynamics(m, w, i, j, s, &v);
     /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, prr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, prr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[2*count + k], add, prr_Z_a_t);  /* Z_a_z_of_legs */
+    gather(&terms[0*count + k], add, v.prr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.prr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[2*count + k], add, v.prr_Z_a_t);  /* Z_a_z_of_legs */
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
-INLINE void Z_place_prr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_prr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
-    const real Z_p_x = s[2*w + k];
+    const real Z_p_x = s[3*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[3*w + k];
+    const real Z_p_y = s[4*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[2*w + k];
-    const real Z_q_z = s[4*w + k];
+    const real Z_q_z = s[5*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
@@ -1875,12 +1771,12 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
+    real s[6] = {0}, sums[3] = {0};
     real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
     values v;
-    Z_before(m, 1, 0, X, &v, s);
+    Z_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         Z_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, terms_prr, o_prr);
     }
@@ -1890,19 +1786,19 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
-    Z_between(m, 1, 0, V, &v, s);
+    Z_between(m, 1, 0, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
-    real s[5*LANES], sums[3*LANES];
+    real s[6*LANES], sums[3*LANES];
     real o_prr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s);
-        Z_between(m, LANES, k, V, &v, s);
+        Z_before(m, LANES, k, X, V, &v, s);
+        Z_between(m, LANES, k, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
@@ -1931,7 +1827,6 @@ INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    stage_prr_H_condition(m, i, &v);
     /* (prr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.prr_w_1_x;
     o[1*count + k] = v.prr_w_1_y;
@@ -1943,7 +1838,7 @@ INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 }
 
 INLINE void H_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1953,9 +1848,9 @@ INLINE void H_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[5*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
     values v;
     H_before(m, 1, 0, X, &v, s);
@@ -1967,9 +1862,10 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_prr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -1998,6 +1894,7 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     values *v, real *s)
 {
     stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -2005,13 +1902,13 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     /* (f_p) inertia force of the platform less its weight */
     const real alpha_z = A[2*w + k];
-    const real f_p_x = a_t_x*m->m_star + v->W_p_xx*v->h_star_x - alpha_z*v->h_star_y;
-    const real f_p_y = a_t_y*m->m_star + v->W_p_xx*v->h_star_y + alpha_z*v->h_star_x;
+    const real f_p_x = a_t_x*m->m_star - alpha_z*v->h_star_y - v->f_p_t;
+    const real f_p_y = a_t_y*m->m_star + alpha_z*v->h_star_x - v->f_p_t_2;
     /* (mu_p) inertia moment of the platform less that of its weight */
     const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v->h_star_x - a_t_x*v->h_star_y;
-    s[2*w + k] = f_p_x;
-    s[3*w + k] = f_p_y;
-    s[4*w + k] = mu_p_z;
+    s[3*w + k] = f_p_x;
+    s[4*w + k] = f_p_y;
+    s[5*w + k] = mu_p_z;
 }
 
 INLINE void required_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2032,8 +1929,6 @@ INLINE void required_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_y_prr_axes2_x*v.prr_c_in_axes2_x;
     /* (R_a) moment that actuators and external wrench must give */
     const real prr_R_a_t = prr_c_x*v.prr_q_y - prr_c_y*v.prr_q_x;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    const real prr_H_a_1_z = v.prr_q_x*v.prr_w_1_y - v.prr_q_y*v.prr_w_1_x;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, prr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, prr_c_y);  /* R_t_y_of_legs */
@@ -2042,14 +1937,14 @@ INLINE void required_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
     /* (prr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.prr_w_1_x;
     o[1*count + k] = v.prr_w_1_y;
-    /* (prr-H_a_1) */
-    o[2*count + k] = prr_H_a_1_z;
+    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.prr_H_a_1_z;
     o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
 INLINE void required_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2062,14 +1957,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 {
     /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
-    const real f_p_x = s[2*w + k];
+    const real f_p_x = s[3*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
-    const real f_p_y = s[3*w + k];
+    const real f_p_y = s[4*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
     /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
-    const real mu_p_z = s[4*w + k];
+    const real mu_p_z = s[5*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
@@ -2079,9 +1974,9 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
+    real s[6] = {0}, sums[3] = {0};
     real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[5*LEGS(LEGS_OF_prr)] = {0};
     values v;
     required_before(m, 1, 0, X, &v, s);
@@ -2099,9 +1994,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, verdict *restrict t)
+    real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[5*LANES], sums[3*LANES];
+    real s[6*LANES], sums[3*LANES];
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2135,22 +2030,21 @@ INLINE void inverse_kinematics_legs_prr(const prepared *m, size_t w, size_t i, s
     size_t count, const real *s, const real *X, real *o)
 {
     values_prr v;
-    stage_prr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (prr-q_2) displacement of joint 2 */
-    const real prr_q_2 =
-        angle(m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*(v.prr_S_x*m->prr_base_frame_xy[i]
-        + v.prr_S_y*m->prr_base_frame_yy[i]),
-        m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*v.prr_q_1_t);
+    stage_prr_X(m, w, i, j, s, X, &v);
     /* (prr-q_1) displacement of joint 1 */
-    o[0*count + k] = v.prr_q_1;
+    const real prr_q_1 = v.prr_S_in_axes0_x - v.prr_q_1_t;
+    /* (prr-q_2) displacement of joint 2 */
+    const real prr_q_2 = angle(v.prr_s_2, v.prr_c_2);
+    /* (prr-q_1) */
+    o[0*count + k] = prr_q_1;
     /* (prr-q_2) */
     o[1*count + k] = prr_q_2;
-    o[3*count + k] = v.prr_q_1 + prr_q_2;
+    o[3*count + k] = prr_q_1 + prr_q_2;
     o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
 }
 
 INLINE void inverse_kinematics_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[2*i*w + k] = o[0*count + at];
     q[(1 + 2*i)*w + k] = o[1*count + at];
@@ -2158,9 +2052,9 @@ INLINE void inverse_kinematics_place_prr(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[3*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_prr[4*LEGS(LEGS_OF_prr)] = {0};
     values v;
     inverse_kinematics_before(m, 1, 0, X, &v, s);
@@ -2173,9 +2067,9 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_prr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2205,33 +2099,21 @@ INLINE void joint_rates_legs_prr(const prepared *m, size_t w, size_t i, size_t j
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    /* (prr-S_dot) velocity of the connection point */
-    const real omega_z = V[2*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real prr_S_dot_x = t_dot_x - omega_z*v.prr_q_y;
-    const real t_dot_y = V[1*w + j];
-    const real prr_S_dot_y = t_dot_y + omega_z*v.prr_q_x;
-    /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-    const real prr_v_2_in_axes0_y =
-        -m->inv_prr_size_t[i]*m->prr_branch_1[i]*root(v.prr_disc_1)*m->prr_platform_joint_offset_x[i]*m->prr_platform_joint_offset_x[i];
+    stage_prr_V_X(m, w, i, j, V, &v);
     /* (prr-qd_1) rate of joint 1 */
-    const real prr_qd_1_t = -(prr_S_dot_x*m->prr_base_frame_xy[i] +
-        prr_S_dot_y*m->prr_base_frame_yy[i])/prr_v_2_in_axes0_y;
-    const real prr_qd_1 = prr_S_dot_x*m->prr_base_frame_xx[i] +
-        prr_S_dot_y*m->prr_base_frame_yx[i] -
-        m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*m->prr_platform_joint_offset_x[i]*prr_qd_1_t*(v.prr_S_x*m->prr_base_frame_xy[i]
-        + v.prr_S_y*m->prr_base_frame_yy[i]);
+    const real prr_qd_1 = v.prr_S_dot_x*m->prr_base_frame_xx[i] +
+        v.prr_S_dot_y*m->prr_base_frame_yx[i] + v.prr_qd_1_t*v.prr_v_2_in_axes0_x;
     /* (prr-qd_1) */
     o[0*count + k] = prr_qd_1;
     /* (prr-qd_2) rate of joint 2 */
-    o[1*count + k] = -prr_qd_1_t;
-    o[4*count + k] = prr_qd_1 + prr_qd_1_t;
+    o[1*count + k] = -v.prr_qd_1_t;
+    o[4*count + k] = prr_qd_1 + v.prr_qd_1_t;
     o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
-    o[3*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
+    o[3*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
 INLINE void joint_rates_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[2*i*w + k] = o[0*count + at];
     qd[(1 + 2*i)*w + k] = o[1*count + at];
@@ -2240,9 +2122,10 @@ INLINE void joint_rates_place_prr(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
     values v;
     joint_rates_before(m, 1, 0, X, &v, s);
@@ -2255,9 +2138,9 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2290,30 +2173,17 @@ INLINE void joint_accelerations_legs_prr(const prepared *m, size_t w, size_t i, 
     stage_prr_A_X(w, j, A, &v);
     stage_prr_V_X(m, w, i, j, V, &v);
     stage_prr_A_V_X(w, j, V, &v);
-    /* (prr-qd_2) rate of joint 2 */
-    const real prr_qd_2_t = -1/v.prr_v_2_in_axes0_y;
-    const real prr_qd_2_t_2 = prr_qd_2_t*(v.prr_S_dot_x*m->prr_base_frame_xy[i] +
-        v.prr_S_dot_y*m->prr_base_frame_yy[i]);
-    /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-    const real prr_rel_in_axes2_x = v.axis_x_prr_axes2_x*v.prr_S_ddot_x -
-        v.axis_y_prr_axes2_x*v.prr_S_ddot_y +
-        m->prr_platform_joint_offset_x[i]*prr_qd_2_t_2*prr_qd_2_t_2;
     /* (prr-qdd_1) acceleration of joint 1 */
-    const real prr_qdd_1_t = prr_qd_2_t*(v.prr_S_ddot_in_axes2_y*v.prr_c_2 +
-        prr_rel_in_axes2_x*v.prr_s_2);
-    const real prr_qdd_1 = v.prr_c_2*prr_rel_in_axes2_x - v.prr_S_ddot_in_axes2_y*v.prr_s_2 -
-        m->prr_platform_joint_offset_x[i]*prr_qdd_1_t*v.prr_s_2;
-    /* (prr-qdd_1) */
-    o[0*count + k] = prr_qdd_1;
+    o[0*count + k] = v.prr_qdd_1;
     /* (prr-qdd_2) acceleration of joint 2 */
-    o[1*count + k] = -prr_qdd_1_t;
-    o[4*count + k] = prr_qdd_1 + prr_qdd_1_t;
+    o[1*count + k] = -v.prr_qdd_1_t;
+    o[4*count + k] = v.prr_qdd_1 + v.prr_qdd_1_t;
     o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
 INLINE void joint_accelerations_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[2*i*w + k] = o[0*count + at];
     qdd[(1 + 2*i)*w + k] = o[1*count + at];
@@ -2323,9 +2193,9 @@ INLINE void joint_accelerations_place_prr(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
     values v;
     joint_accelerations_before(m, 1, 0, X, &v, s);
@@ -2338,9 +2208,9 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2393,7 +2263,7 @@ INLINE void legs_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[3*i*w + k] = o[0*count + at];
     leg_force[(3*i + 1)*w + k] = o[1*count + at];
@@ -2404,9 +2274,9 @@ INLINE void legs_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 9);
@@ -2435,35 +2305,30 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
-    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xx*m->h_star_in_platform_x -
-        v->R_yx*m->h_star_in_platform_y) + m->gravity_y*(m->m_star*t_y +
-        v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x);
-    s[2*w + k] = potential_t;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
+        m->gravity_y*(m->m_star*t_y + v->h_star_y);
+    s[3*w + k] = potential_t;
 }
 
 INLINE void potential_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
     values_prr v;
-    stage_prr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real prr_c_2 = m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*v.prr_q_1_t;
-    /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real prr_s_2 =
-        m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*(v.prr_S_x*m->prr_base_frame_xy[i]
-        + v.prr_S_y*m->prr_base_frame_yy[i]);
+    stage_prr_X(m, w, i, j, s, X, &v);
+    /* (prr-q_1) displacement of joint 1 */
+    const real prr_q_1 = v.prr_S_in_axes0_x - v.prr_q_1_t;
     /* (potential) */
     const real prr_potential_t_2 = m->prr_g_in_axes0_y[i]*(m->prr_h_1_in_spec0_y[i] +
-        m->prr_potential_t[i] + m->prr_h_2_in_spec2_x[i]*prr_s_2 +
-        prr_c_2*m->prr_h_2_in_spec2_y[i]) + m->prr_g_in_axes0_x[i]*(m->prr_h_1_in_spec0_x[i] -
-        m->prr_h_2_in_spec2_y[i]*prr_s_2 + prr_c_2*m->prr_h_2_in_spec2_x[i] +
-        m->prr_link1_mass[i]*(m->prr_b_in_axes0_x[i] + v.prr_q_1));
+        m->prr_potential_t[i] + m->prr_h_2_in_spec2_x[i]*v.prr_s_2 +
+        v.prr_c_2*m->prr_h_2_in_spec2_y[i]) + m->prr_g_in_axes0_x[i]*(m->prr_h_1_in_spec0_x[i]
+        - m->prr_h_2_in_spec2_y[i]*v.prr_s_2 + v.prr_c_2*m->prr_h_2_in_spec2_x[i] +
+        m->prr_link1_mass[i]*(m->prr_b_in_axes0_x[i] + prr_q_1));
     /* (potential) */
     gather(&terms[0*count + k], add, prr_potential_t_2);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
 }
 
-INLINE void potential_place_prr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_prr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
 }
@@ -2472,15 +2337,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 {
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
-    const real potential_t = s[2*w + k];
+    const real potential_t = s[3*w + k];
     const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[3] = {0}, sums[1] = {0};
+    real s[4] = {0}, sums[1] = {0};
     real terms_prr[LEGS(LEGS_OF_prr)] = {0}, o_prr[LEGS(LEGS_OF_prr)] = {0};
     values v;
     potential_before(m, 1, 0, X, &v, s);
@@ -2499,7 +2364,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2514,7 +2379,6 @@ INLINE void condition_legs_prr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    stage_prr_H_condition(m, i, &v);
     /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real prr_pivot_size = magnitude(v.prr_v_2_in_axes0_y);
@@ -2540,7 +2404,7 @@ INLINE void condition_legs_prr(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void condition_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *pivots, real *reach, verdict *t)
+    *o, real *H, real *pivots, real *reach, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2553,7 +2417,7 @@ INLINE void condition_place_prr(size_t w, size_t i, size_t k, size_t at, size_t 
 }
 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
-    *lengths, verdict *t)
+    *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_prr = sums[0*w + k];
@@ -2564,9 +2428,9 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
-    real s[2] = {0}, sums[1] = {0};
+    real s[3] = {0}, sums[1] = {0};
     real terms_prr[LEGS(LEGS_OF_prr)] = {0}, o_prr[8*LEGS(LEGS_OF_prr)] = {0};
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -2586,196 +2450,179 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int planar_3prr_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int planar_3prr_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int planar_3prr_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int planar_3prr_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int planar_3prr_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int planar_3prr_joint_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int planar_3prr_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -2834,14 +2681,9 @@ int planar_3prr_inverse_dynamics(const prepared *m, const real *X, const real *V
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -2856,7 +2698,7 @@ int planar_3prr_inverse_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    return settled(&why, NU, tau_out);
+    return final_status(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -2864,7 +2706,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2875,8 +2717,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_3(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
 }
 
 static const size_t order_A[] = {0, 1, 2};
@@ -2888,14 +2730,9 @@ int planar_3prr_forward_dynamics(const prepared *m, const real *X, const real *V
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
         subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -2914,7 +2751,7 @@ int planar_3prr_forward_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2923,7 +2760,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
         A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2938,8 +2775,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_3(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int planar_3prr_complete_acceleration(const prepared *m, const real *X, const real *V, const real
@@ -2949,13 +2786,11 @@ int planar_3prr_complete_acceleration(const prepared *m, const real *X, const re
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int planar_3prr_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -2963,49 +2798,27 @@ int planar_3prr_leg_reactions(const prepared *m, const real *X, const real *V, c
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
-        unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0},
-        work[NV*PADDED(NV)];
-    verdict why;
+    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, &why);
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - wrench[i];
-    }
-    eliminate_3(1, NV, order_tau, sizes_tau, H, subtract_1, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NV, 1, H, work);
-        solve_apart(NV, subtract_1, work, solve_1, why.singular);
-        check(NV, 1, solve_1, why.overflow);
-    }
+    flag_status(planar_3prr_inverse_dynamics(m, X, V, A, wrench, solve_1), &why);
     legs_run(m, X, V, A, leg_force, actuator, &why);
     for (size_t i = 0; i < NL*NL; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
-    check(NL*NL, 1, forces, why.overflow);
-    copy(NL*NL, forces, forces_out);
-    return settled(&why, NL*NL, forces_out);
+    return finished(NL*NL, forces, forces_out, &why);
 }
 
 int planar_3prr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -3014,8 +2827,8 @@ int planar_3prr_energy(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int planar_3prr_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -3025,9 +2838,9 @@ int planar_3prr_condition(const prepared *m, const real *X, real *sigma_out, rea
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
         divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -3047,8 +2860,8 @@ int planar_3prr_condition(const prepared *m, const real *X, real *sigma_out, rea
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int planar_3prr_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -3058,13 +2871,12 @@ int planar_3prr_manipulability(const prepared *m, const real *X, real *measure_o
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
         = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -3082,8 +2894,8 @@ int planar_3prr_manipulability(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int planar_3prr_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -3093,13 +2905,12 @@ int planar_3prr_singularity_distance(const prepared *m, const real *X, real *act
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
         = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -3117,52 +2928,47 @@ int planar_3prr_singularity_distance(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[3] = {0}, gap[NU] = {0};
-    verdict why;
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[3] = {0}, residual[NU] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(3, 1, planar_3prr_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
+        residual[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -3174,21 +2980,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -3202,17 +3008,11 @@ int planar_3prr_forward_kinematics(const prepared *m, const real *q_actuated, co
     *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int planar_3prr_dissipation(const prepared *m, const real *X, const real *V, real
@@ -3221,211 +3021,155 @@ int planar_3prr_dissipation(const prepared *m, const real *X, const real *V, rea
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int planar_3prr_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int planar_3prr_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int planar_3prr_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int planar_3prr_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, planar_3prr_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int planar_3prr_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, planar_3prr_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int planar_3prr_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, planar_3prr_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int planar_3prr_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int planar_3prr_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_2 = X + 2;
     rotation_of_angle(X_from_2, R);
-    check(4, 1, R, why.overflow);
-    copy(4, R, R_out);
-    return settled(&why, 4, R_out);
+    return finished(4, R, R_out, &why);
 }
 
 int planar_3prr_pose(const real *t, const real *R, real *X_out)
 {
     real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 2) + total(R, 4);
-    if (!is_finite(total_in)) {
-        check(2, 1, t, why.invalid);
-        check(4, 1, R, why.invalid);
-    }
+    check_two(2, t, 4, R, why.invalid);
     angle_of_rotation(R, angle_of_rotation_1);
     beside(1, 2, 1, t, angle_of_rotation_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int planar_3prr_X_dot(const real *X, const real *V, real *X_dot_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const X_dot = V;
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int planar_3prr_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
+    check_two(NQ, X, NV, step, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int planar_3prr_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] = {0}, step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
+    check_two(NQ, X0, NQ, X1, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -3433,39 +3177,23 @@ int planar_3prr_difference(const real *X0, const real *X1, real *step_out)
         step[i] = subtract_1[i];
     }
     wrap_turns(1, 1, places_step, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int planar_3prr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    static const size_t places_wrap_turns_1[] = {2};
-    real subtract_1[NQ] = {0}, wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
-    verdict why;
+    real wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    for (size_t i = 0; i < NQ; ++i) {
-        subtract_1[i] = X1[i] - X0[i];
-    }
-    for (size_t i = 0; i < NQ; ++i) {
-        wrap_turns_1[i] = subtract_1[i];
-    }
-    wrap_turns(1, 1, places_wrap_turns_1, wrap_turns_1);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(planar_3prr_difference(X0, X1, wrap_turns_1), &why);
     for (size_t i = 0; i < NQ; ++i) {
         scale_1[i] = wrap_turns_1[i]*s[i%(1)];
     }
     for (size_t i = 0; i < NQ; ++i) {
         X[i] = X0[i] + scale_1[i];
     }
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

@@ -135,7 +135,7 @@ int planar_3prr_Z(const planar_3prr_model *model, const planar_3prr_real *X, con
 size_t planar_3prr_Z_batch(const planar_3prr_model *model, size_t n, const planar_3prr_real *X,
     const planar_3prr_real *V, planar_3prr_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 90 mul, 54 add, 3 div, 3 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 93 mul, 54 add, 3 div, 3 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int planar_3prr_H(const planar_3prr_model *model, const planar_3prr_real *X, planar_3prr_real *H);
 size_t planar_3prr_H_batch(const planar_3prr_model *model, size_t n, const planar_3prr_real *X,
@@ -148,7 +148,7 @@ int planar_3prr_inverse_kinematics(const planar_3prr_model *model, const planar_
 size_t planar_3prr_inverse_kinematics_batch(const planar_3prr_model *model, size_t n, const
     planar_3prr_real *X, planar_3prr_real *q, int *status);
 
-/* Rates of all joints. 75 mul, 48 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 78 mul, 48 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int planar_3prr_joint_rates(const planar_3prr_model *model, const planar_3prr_real *X, const
     planar_3prr_real *V, planar_3prr_real *rates);
@@ -222,7 +222,7 @@ size_t planar_3prr_energy_batch(const planar_3prr_model *model, size_t n, const 
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 100 mul, 66 add, 3 div, 4 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   legs. 103 mul, 66 add, 3 div, 4 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
    (3), legs (3). */
 int planar_3prr_condition(const planar_3prr_model *model, const planar_3prr_real *X,
     planar_3prr_real *sigma, planar_3prr_real *legs);
@@ -230,14 +230,14 @@ size_t planar_3prr_condition_batch(const planar_3prr_model *model, size_t n, con
     planar_3prr_real *X, planar_3prr_real *sigma, planar_3prr_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 100 mul, 66 add, 3 div, 4 sqrt, 0 trig; the singular values
+   the least over the largest of them. 103 mul, 66 add, 3 div, 4 sqrt, 0 trig; the singular values
    apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int planar_3prr_manipulability(const planar_3prr_model *model, const planar_3prr_real *X,
     planar_3prr_real *measure, planar_3prr_real *isotropy);
 size_t planar_3prr_manipulability_batch(const planar_3prr_model *model, size_t n, const
     planar_3prr_real *X, planar_3prr_real *measure, planar_3prr_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 100
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 103
    mul, 66 add, 3 div, 4 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
    legs (1). */
 int planar_3prr_singularity_distance(const planar_3prr_model *model, const planar_3prr_real *X,
@@ -288,7 +288,7 @@ int planar_3prr_actuator_positions(const planar_3prr_model *model, const planar_
 size_t planar_3prr_actuator_positions_batch(const planar_3prr_model *model, size_t n, const
     planar_3prr_real *X, planar_3prr_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 75 mul, 48 add, 3 div, 3 sqrt, 0 trig. In: X
+/* Rates of the actuated joints, in the order of tau. 78 mul, 48 add, 3 div, 3 sqrt, 0 trig. In: X
    (NQ), V (NV). Out: rates (NU). */
 int planar_3prr_actuator_rates(const planar_3prr_model *model, const planar_3prr_real *X, const
     planar_3prr_real *V, planar_3prr_real *rates);

@@ -1335,11 +1335,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1562,8 +1562,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1571,7 +1571,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1579,11 +1579,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1665,9 +1665,12 @@ def _run_dynamics(m, X, V):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
+    # (f_p) inertia force of the platform less its weight
+    f_p_t = -W_p_xx*h_star_x
+    f_p_t_2 = -W_p_xx*h_star_y
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = W_p_xx*h_star_x - Z_p_t
-    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
+    Z_p_x = -Z_p_t - f_p_t
+    Z_p_y = -Z_p_t_2 - f_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     (
@@ -1691,8 +1694,10 @@ def _run_dynamics(m, X, V):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
@@ -1718,19 +1723,19 @@ def _run_dynamics(m, X, V):
         # (prr-w_2) reciprocal vector 2
         prr_w_2_t = prr_s_2*prr_w_1_t
         prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-qd_1) rate of joint 1
+        prr_qd_1_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
-        prr_W_2_t = prr_qd_2_t*prr_qd_2_t
+        prr_W_2_t = prr_qd_1_t*prr_qd_1_t
         # (prr-u_1) centripetal acceleration of the connection point
-        prr_u_1_x = -omega_z*prr_S_dot_t_2
-        prr_u_1_t = omega_z*prr_S_dot_t
-        prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x + axis_y_prr_axes2_x*prr_u_1_t
-        prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x - axis_x_prr_axes2_x*prr_u_1_t
+        prr_u_1_x = W_p_xx*prr_q_x
+        prr_u_1_y = W_p_xx*prr_q_y
+        prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x - axis_y_prr_axes2_x*prr_u_1_y
+        prr_u_1_in_axes2_y = axis_x_prr_axes2_x*prr_u_1_y + axis_y_prr_axes2_x*prr_u_1_x
+        # (prr-bias) acceleration of the connection point at zero joint accelerations
+        prr_bias_t = prr_platform_joint_offset_x*prr_qd_1_t*prr_qd_1_t
         # (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        prr_rel_o_in_axes2_x = (
-        prr_u_1_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2_t*prr_qd_2_t
-        )
+        prr_rel_o_in_axes2_x = prr_bias_t + prr_u_1_in_axes2_x
         # (prr-B_2_o) remainder of the acceleration tensor of link 2
         prr_B_2_o_in_axes2_xy = (
         prr_w_1_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
@@ -1742,13 +1747,12 @@ def _run_dynamics(m, X, V):
         )
         # (prr-f_1_o) remainder of: inertia force of link 1 less its weight
         prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass
+        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+        prr_g_in_axes2_x = prr_c_2*prr_g_in_axes0_x + prr_g_in_axes0_y*prr_s_2
+        prr_g_in_axes2_y = prr_c_2*prr_g_in_axes0_y - prr_g_in_axes0_x*prr_s_2
         # (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        prr_acc_2_o_in_axes2_x = (
-        prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
-        )
-        prr_acc_2_o_in_axes2_y = (
-        prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
-        )
+        prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - prr_g_in_axes2_x
+        prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y - prr_g_in_axes2_y
         # (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prr_mu_2_o_in_axes2_z = (
         prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
@@ -1761,6 +1765,9 @@ def _run_dynamics(m, X, V):
         # (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
         prr_d_Gamma_1_t = prr_link1_mass*prr_v_2_in_axes0_x*prr_w_1_t
         prr_d_Gamma_1_in_axes2_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
+        # (prr-c) leg force on the platform without actuation and without the mass at the connection point
+        prr_c_t = prr_W_2_t*prr_h_2_in_spec2_x
+        prr_c_t_2 = prr_W_2_t*prr_h_2_in_spec2_y
         # (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         prr_d_c_in_axes2_xx = (
         prr_d_Gamma_2_in_axes2_x*prr_w_2_t - prr_h_2_in_spec2_y*prr_w_2_t -
@@ -1773,12 +1780,12 @@ def _run_dynamics(m, X, V):
         # (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prr_c_o_t = prr_w_1_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
         prr_c_o_in_axes2_x = (
-        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
-            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x
+        prr_c_t + prr_c_o_t*prr_s_2 - prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y -
+            prr_c_2*prr_f_1_o_in_axes0_x
         )
         prr_c_o_in_axes2_y = (
-        prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y +
-            prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2
+        prr_c_t_2 + prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x + prr_c_2*prr_c_o_t +
+            prr_f_1_o_in_axes0_x*prr_s_2
         )
         # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
         prr_Q_t = (
@@ -1894,8 +1901,10 @@ def _run_M(m, X):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
@@ -1905,9 +1914,12 @@ def _run_M(m, X):
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
         prr_w_1_t = -1.0/prr_v_2_in_axes0_y
         prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
         prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
         # (prr-w_2) reciprocal vector 2
         prr_w_2_t = prr_s_2*prr_w_1_t
         prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t
@@ -1928,10 +1940,8 @@ def _run_M(m, X):
             prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x
         )
         # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
-        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
         prr_Q_t = (
-        prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*(prr_c_2*prr_w_1_t_2 - prr_s_2) +
+        prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_y +
             prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y + prr_h_2_in_spec2_x*prr_w_2_in_axes2_y
         )
         prr_Q_t_2 = 0.5*prr_Q_t
@@ -2007,9 +2017,12 @@ def _run_Z(m, X, V):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
+    # (f_p) inertia force of the platform less its weight
+    f_p_t = -W_p_xx*h_star_x
+    f_p_t_2 = -W_p_xx*h_star_y
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = W_p_xx*h_star_x - Z_p_t
-    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
+    Z_p_x = -Z_p_t - f_p_t
+    Z_p_y = -Z_p_t_2 - f_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     Z_t_prr_x, Z_t_prr_y, Z_a_prr_z = [0.0] * 3
@@ -2030,8 +2043,10 @@ def _run_Z(m, X, V):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
@@ -2045,25 +2060,26 @@ def _run_Z(m, X, V):
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2_t = -1.0/prr_v_2_in_axes0_y
-        prr_qd_2_t_2 = prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
-        # (prr-W_2) centripetal tensor of link 2
-        prr_W_2_t = prr_qd_2_t_2*prr_qd_2_t_2
-        # (prr-u_1) centripetal acceleration of the connection point
+        # (prr-w_1) reciprocal vector 1
         axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
         axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
-        prr_u_1_x = -omega_z*prr_S_dot_t_2
-        prr_u_1_t = omega_z*prr_S_dot_t
-        prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x + axis_y_prr_axes2_x*prr_u_1_t
-        prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x - axis_x_prr_axes2_x*prr_u_1_t
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        # (prr-qd_1) rate of joint 1
+        prr_qd_1_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-W_2) centripetal tensor of link 2
+        prr_W_2_t = prr_qd_1_t*prr_qd_1_t
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_x = W_p_xx*prr_q_x
+        prr_u_1_y = W_p_xx*prr_q_y
+        prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x - axis_y_prr_axes2_x*prr_u_1_y
+        prr_u_1_in_axes2_y = axis_x_prr_axes2_x*prr_u_1_y + axis_y_prr_axes2_x*prr_u_1_x
+        # (prr-bias) acceleration of the connection point at zero joint accelerations
+        prr_bias_t = prr_platform_joint_offset_x*prr_qd_1_t*prr_qd_1_t
         # (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        prr_rel_o_in_axes2_x = (
-        prr_u_1_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2_t_2*prr_qd_2_t_2
-        )
+        prr_rel_o_in_axes2_x = prr_bias_t + prr_u_1_in_axes2_x
         # (prr-B_2_o) remainder of the acceleration tensor of link 2
         prr_B_2_o_in_axes2_xy = (
-        prr_qd_2_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
+        prr_w_1_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
         )
         # (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         prr_acc_1_o_in_axes0_x = (
@@ -2072,27 +2088,29 @@ def _run_Z(m, X, V):
         )
         # (prr-f_1_o) remainder of: inertia force of link 1 less its weight
         prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass
+        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+        prr_g_in_axes2_x = prr_c_2*prr_g_in_axes0_x + prr_g_in_axes0_y*prr_s_2
+        prr_g_in_axes2_y = prr_c_2*prr_g_in_axes0_y - prr_g_in_axes0_x*prr_s_2
         # (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        prr_acc_2_o_in_axes2_x = (
-        prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
-        )
-        prr_acc_2_o_in_axes2_y = (
-        prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
-        )
+        prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - prr_g_in_axes2_x
+        prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y - prr_g_in_axes2_y
         # (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prr_mu_2_o_in_axes2_z = (
         prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
             prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y
         )
+        # (prr-c) leg force on the platform without actuation and without the mass at the connection point
+        prr_c_t = prr_W_2_t*prr_h_2_in_spec2_x
+        prr_c_t_2 = prr_W_2_t*prr_h_2_in_spec2_y
         # (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
-        prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_o_t = prr_w_1_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
         prr_c_o_in_axes2_x = (
-        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
-            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x
+        prr_c_t + prr_c_o_t*prr_s_2 - prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y -
+            prr_c_2*prr_f_1_o_in_axes0_x
         )
         prr_c_o_in_axes2_y = (
-        prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y +
-            prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2
+        prr_c_t_2 + prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x + prr_c_2*prr_c_o_t +
+            prr_f_1_o_in_axes0_x*prr_s_2
         )
         # (prr-U) velocity and gravity terms of the leg force
         prr_U_x = -axis_x_prr_axes2_x*prr_c_o_in_axes2_x - axis_y_prr_axes2_x*prr_c_o_in_axes2_y
@@ -2118,7 +2136,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 90 mul, 54 add, 3 div, 3 sqrt, 0 trig
+# H: 93 mul, 54 add, 3 div, 3 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -2150,21 +2168,25 @@ def _run_H(m, X):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
         axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
         axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
-        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y
-        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t
-        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
         prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
         prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
         # (prr-H_a_1) moment of the column's unit force about the platform origin
@@ -2219,8 +2241,10 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     # (f_p) inertia force of the platform less its weight
-    f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y
-    f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x
+    f_p_t = -W_p_xx*h_star_x
+    f_p_t_2 = -W_p_xx*h_star_y
+    f_p_x = a_t_x*m_star - f_p_t - alpha_z*h_star_y
+    f_p_y = a_t_y*m_star + alpha_z*h_star_x - f_p_t_2
     # (mu_p) inertia moment of the platform less that of its weight
     mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_a_prr_z = [0.0] * 3
@@ -2241,8 +2265,10 @@ def _run_required(m, X, V, A):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
@@ -2265,10 +2291,10 @@ def _run_required(m, X, V, A):
         prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
         prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
         prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-qd_1) rate of joint 1
+        prr_qd_1_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
-        prr_W_2_t = prr_qd_2_t*prr_qd_2_t
+        prr_W_2_t = prr_qd_1_t*prr_qd_1_t
         # (prr-a_p) acceleration of the connection point without its centripetal part
         prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
         prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
@@ -2277,42 +2303,40 @@ def _run_required(m, X, V, A):
         prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
         prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
         prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
+        # (prr-bias) acceleration of the connection point at zero joint accelerations
+        prr_bias_t = prr_platform_joint_offset_x*prr_qd_1_t*prr_qd_1_t
         # (prr-rel) acceleration of the connection point left to the joint accelerations
-        prr_rel_in_axes2_x = (
-        prr_S_ddot_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2_t*prr_qd_2_t
-        )
-        # (prr-B_2) acceleration tensor of link 2
-        prr_B_2_in_axes2_xy = (
-        prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
-        )
-        # (prr-acc_1) acceleration of the reference point of link 1, less gravity
-        prr_acc_1_in_axes0_x = (
-        prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x -
+        prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x + prr_bias_t
+        # (prr-qdd_1) acceleration of joint 1
+        prr_qdd_1_t = prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
+        prr_qdd_1 = (
+        prr_c_2*prr_rel_in_axes2_x + prr_qdd_1_t*prr_v_2_in_axes0_x -
             prr_S_ddot_in_axes2_y*prr_s_2
         )
+        # (prr-acc_1) acceleration of the reference point of link 1, less gravity
+        prr_acc_1_in_axes0_x = prr_qdd_1 - prr_g_in_axes0_x
         # (prr-f_1) inertia force of link 1 less its weight
         prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass
         # (prr-acc_2) acceleration of the reference point of link 2, less gravity
-        prr_acc_2_in_axes2_x = (
-        prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
-        )
-        prr_acc_2_in_axes2_y = (
-        prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
-        )
+        prr_g_in_axes2_x = prr_c_2*prr_g_in_axes0_x + prr_g_in_axes0_y*prr_s_2
+        prr_g_in_axes2_y = prr_c_2*prr_g_in_axes0_y - prr_g_in_axes0_x*prr_s_2
+        prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x - prr_g_in_axes2_x
+        prr_acc_2_in_axes2_y = prr_S_ddot_in_axes2_y - prr_g_in_axes2_y
         # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         prr_mu_2_in_axes2_z = (
-        prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz -
+        prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x - prr_J_2_in_spec2_zz*prr_qdd_1_t -
             prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y
         )
         # (prr-c) leg force on the platform without actuation and without the mass at the connection point
-        prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z - prr_f_1_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_t = prr_W_2_t*prr_h_2_in_spec2_x
+        prr_c_t_2 = prr_W_2_t*prr_h_2_in_spec2_y
+        prr_c_t_3 = prr_w_1_t*(prr_mu_2_in_axes2_z - prr_f_1_in_axes0_x*prr_v_2_in_axes0_x)
         prr_c_in_axes2_x = (
-        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 - prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y -
-            prr_c_2*prr_f_1_in_axes0_x
+        prr_c_t + prr_c_t_3*prr_s_2 - prr_c_2*prr_f_1_in_axes0_x - prr_h_2_in_spec2_y*prr_qdd_1_t
         )
         prr_c_in_axes2_y = (
-        prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t +
-            prr_f_1_in_axes0_x*prr_s_2
+        prr_c_t_2 + prr_c_2*prr_c_t_3 + prr_f_1_in_axes0_x*prr_s_2 +
+            prr_h_2_in_spec2_x*prr_qdd_1_t
         )
         prr_c_x = axis_x_prr_axes2_x*prr_c_in_axes2_x + axis_y_prr_axes2_x*prr_c_in_axes2_y
         prr_c_y = axis_x_prr_axes2_x*prr_c_in_axes2_y - axis_y_prr_axes2_x*prr_c_in_axes2_x
@@ -2368,8 +2392,10 @@ def _run_inverse_kinematics(m, X):
             prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
-        prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
         prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
@@ -2377,11 +2403,15 @@ def _run_inverse_kinematics(m, X):
         # (prr-q_1) displacement of joint 1
         prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         prr_q_1 = prr_S_in_axes0_x - prr_q_1_t
-        # (prr-q_2) displacement of joint 2
-        prr_q_2 = (
-        atan2(inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy), inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t)
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
+        # (prr-q_2) displacement of joint 2
+        prr_q_2 = atan2(prr_s_2, prr_c_2)
         ok = ok & (prr_disc_1 >= 0.0)
         # (prr-q_1) displacement of joint 1
         out_q[_q_prr[0][leg]] = prr_q_1
@@ -2390,7 +2420,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 75 mul, 48 add, 3 div, 3 sqrt, 0 trig
+# joint_rates: 78 mul, 48 add, 3 div, 3 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2429,21 +2459,30 @@ def _run_joint_rates(m, X, V):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
+        )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
-        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
+        prr_S_dot_t = omega_z*prr_q_y
+        prr_S_dot_t_2 = omega_z*prr_q_x
+        prr_S_dot_x = t_dot_x - prr_S_dot_t
+        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
         # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_in_axes0_y = (
-        -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x
-        )
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
         # (prr-qd_1) rate of joint 1
-        prr_qd_1_t = (
-        -(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)/prr_v_2_in_axes0_y
-        )
+        prr_qd_1_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         prr_qd_1 = (
-        prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx -
-            inv_prr_size_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_1_t*(prr_S_x*prr_base_frame_xy
-            + prr_S_y*prr_base_frame_yy)
+        prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx +
+            prr_qd_1_t*prr_v_2_in_axes0_x
         )
         ok = ok & (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size)
         # (prr-qd_1) rate of joint 1
@@ -2499,8 +2538,10 @@ def _run_joint_accelerations(m, X, V, A):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
@@ -2512,29 +2553,31 @@ def _run_joint_accelerations(m, X, V, A):
         prr_S_dot_x = t_dot_x - prr_S_dot_t
         prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
         # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2_t = -1.0/prr_v_2_in_axes0_y
-        prr_qd_2_t_2 = prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        # (prr-qd_1) rate of joint 1
+        prr_qd_1_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-a_p) acceleration of the connection point without its centripetal part
         prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
         prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
-        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
-        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
         prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
         prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
         prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
+        # (prr-bias) acceleration of the connection point at zero joint accelerations
+        prr_bias_t = prr_platform_joint_offset_x*prr_qd_1_t*prr_qd_1_t
         # (prr-rel) acceleration of the connection point left to the joint accelerations
-        prr_rel_in_axes2_x = (
-        axis_x_prr_axes2_x*prr_S_ddot_x + prr_platform_joint_offset_x*prr_qd_2_t_2*prr_qd_2_t_2 -
-            axis_y_prr_axes2_x*prr_S_ddot_y
-        )
+        prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x + prr_bias_t
         # (prr-qdd_1) acceleration of joint 1
-        prr_qdd_1_t = prr_qd_2_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
+        prr_qdd_1_t = prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
         prr_qdd_1 = (
-        prr_c_2*prr_rel_in_axes2_x - prr_S_ddot_in_axes2_y*prr_s_2 -
-            prr_platform_joint_offset_x*prr_qdd_1_t*prr_s_2
+        prr_c_2*prr_rel_in_axes2_x + prr_qdd_1_t*prr_v_2_in_axes0_x -
+            prr_S_ddot_in_axes2_y*prr_s_2
         )
         ok = ok & (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size)
         # (prr-qdd_1) acceleration of joint 1
@@ -2592,8 +2635,10 @@ def _run_legs(m, X, V, A):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
@@ -2616,10 +2661,10 @@ def _run_legs(m, X, V, A):
         prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
         prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
         prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-qd_1) rate of joint 1
+        prr_qd_1_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
-        prr_W_2_t = prr_qd_2_t*prr_qd_2_t
+        prr_W_2_t = prr_qd_1_t*prr_qd_1_t
         # (prr-a_p) acceleration of the connection point without its centripetal part
         prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
         prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
@@ -2628,42 +2673,40 @@ def _run_legs(m, X, V, A):
         prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
         prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
         prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
+        # (prr-bias) acceleration of the connection point at zero joint accelerations
+        prr_bias_t = prr_platform_joint_offset_x*prr_qd_1_t*prr_qd_1_t
         # (prr-rel) acceleration of the connection point left to the joint accelerations
-        prr_rel_in_axes2_x = (
-        prr_S_ddot_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2_t*prr_qd_2_t
-        )
-        # (prr-B_2) acceleration tensor of link 2
-        prr_B_2_in_axes2_xy = (
-        prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
-        )
-        # (prr-acc_1) acceleration of the reference point of link 1, less gravity
-        prr_acc_1_in_axes0_x = (
-        prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x -
+        prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x + prr_bias_t
+        # (prr-qdd_1) acceleration of joint 1
+        prr_qdd_1_t = prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
+        prr_qdd_1 = (
+        prr_c_2*prr_rel_in_axes2_x + prr_qdd_1_t*prr_v_2_in_axes0_x -
             prr_S_ddot_in_axes2_y*prr_s_2
         )
+        # (prr-acc_1) acceleration of the reference point of link 1, less gravity
+        prr_acc_1_in_axes0_x = prr_qdd_1 - prr_g_in_axes0_x
         # (prr-f_1) inertia force of link 1 less its weight
         prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass
         # (prr-acc_2) acceleration of the reference point of link 2, less gravity
-        prr_acc_2_in_axes2_x = (
-        prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
-        )
-        prr_acc_2_in_axes2_y = (
-        prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
-        )
+        prr_g_in_axes2_x = prr_c_2*prr_g_in_axes0_x + prr_g_in_axes0_y*prr_s_2
+        prr_g_in_axes2_y = prr_c_2*prr_g_in_axes0_y - prr_g_in_axes0_x*prr_s_2
+        prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x - prr_g_in_axes2_x
+        prr_acc_2_in_axes2_y = prr_S_ddot_in_axes2_y - prr_g_in_axes2_y
         # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         prr_mu_2_in_axes2_z = (
-        prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz -
+        prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x - prr_J_2_in_spec2_zz*prr_qdd_1_t -
             prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y
         )
         # (prr-c) leg force on the platform without actuation and without the mass at the connection point
-        prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z - prr_f_1_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_t = prr_W_2_t*prr_h_2_in_spec2_x
+        prr_c_t_2 = prr_W_2_t*prr_h_2_in_spec2_y
+        prr_c_t_3 = prr_w_1_t*(prr_mu_2_in_axes2_z - prr_f_1_in_axes0_x*prr_v_2_in_axes0_x)
         prr_c_in_axes2_x = (
-        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 - prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y -
-            prr_c_2*prr_f_1_in_axes0_x
+        prr_c_t + prr_c_t_3*prr_s_2 - prr_c_2*prr_f_1_in_axes0_x - prr_h_2_in_spec2_y*prr_qdd_1_t
         )
         prr_c_in_axes2_y = (
-        prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t +
-            prr_f_1_in_axes0_x*prr_s_2
+        prr_c_t_2 + prr_c_2*prr_c_t_3 + prr_f_1_in_axes0_x*prr_s_2 +
+            prr_h_2_in_spec2_x*prr_qdd_1_t
         )
         # (prr-c_true) leg force on the platform without actuation, the last link's mass included
         prr_c_true_in_axes2_x = prr_c_in_axes2_x - prr_acc_2_in_axes2_x*prr_link2_mass
@@ -2701,11 +2744,11 @@ def _run_potential(m, X):
     R_yx = sin(X_2)
     ok = True
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (potential) potential energy
-    potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x - R_yx*h_star_in_platform_y) +
-        gravity_y*(R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x + m_star*t_y)
-    )
+    potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
@@ -2716,8 +2759,10 @@ def _run_potential(m, X):
             prr_platform_point_y, prr_potential_t, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
-        prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
         prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
@@ -2749,7 +2794,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 100 mul, 66 add, 3 div, 4 sqrt, 0 trig
+# condition: 103 mul, 66 add, 3 div, 4 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -2790,21 +2835,25 @@ def _run_condition(m, X):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
         axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
         axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
-        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y
-        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t
-        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
         prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
         prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
         # (prr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -2989,11 +3038,11 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[[0, 2, 4]]
-    gap = q_actuated - q_of_inverse_kinematics_from_0
-    return (gap,)
+    residual = q_actuated - q_of_inverse_kinematics_from_0
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -3002,7 +3051,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

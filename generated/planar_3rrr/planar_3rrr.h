@@ -153,7 +153,7 @@ int planar_3rrr_inverse_kinematics(const planar_3rrr_model *model, const planar_
 size_t planar_3rrr_inverse_kinematics_batch(const planar_3rrr_model *model, size_t n, const
     planar_3rrr_real *X, planar_3rrr_real *q, int *status);
 
-/* Rates of all joints. 159 mul, 84 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 162 mul, 84 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int planar_3rrr_joint_rates(const planar_3rrr_model *model, const planar_3rrr_real *X, const
     planar_3rrr_real *V, planar_3rrr_real *rates);
@@ -293,7 +293,7 @@ int planar_3rrr_actuator_positions(const planar_3rrr_model *model, const planar_
 size_t planar_3rrr_actuator_positions_batch(const planar_3rrr_model *model, size_t n, const
     planar_3rrr_real *X, planar_3rrr_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 159 mul, 84 add, 6 div, 3 sqrt, 0 trig. In:
+/* Rates of the actuated joints, in the order of tau. 162 mul, 84 add, 6 div, 3 sqrt, 0 trig. In:
    X (NQ), V (NV). Out: rates (NU). */
 int planar_3rrr_actuator_rates(const planar_3rrr_model *model, const planar_3rrr_real *X, const
     planar_3rrr_real *V, planar_3rrr_real *rates);

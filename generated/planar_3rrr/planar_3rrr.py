@@ -1385,11 +1385,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1612,8 +1612,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1621,7 +1621,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1629,11 +1629,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1715,9 +1715,12 @@ def _run_dynamics(m, X, V):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
+    # (f_p) inertia force of the platform less its weight
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = W_p_xx*h_star_y
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = W_p_xx*h_star_x - Z_p_t
-    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
+    Z_p_x = f_p_t - Z_p_t
+    Z_p_y = f_p_t_2 - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     (
@@ -1790,13 +1793,15 @@ def _run_dynamics(m, X, V):
         rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
-            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -1805,12 +1810,13 @@ def _run_dynamics(m, X, V):
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
@@ -1818,13 +1824,12 @@ def _run_dynamics(m, X, V):
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_in_axes2_x = (
-        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_o_in_axes2_y = (
-        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
@@ -1835,12 +1840,12 @@ def _run_dynamics(m, X, V):
         rrr_d_Gamma_2_in_axes2_x = (
         -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2)
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = -rrr_mu_1_t_3 - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
@@ -1849,6 +1854,9 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
         inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y - rrr_d_phi_2_in_axes2_xy -
@@ -1856,12 +1864,11 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_Q_t = (
@@ -2011,6 +2018,10 @@ def _run_M(m, X):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
@@ -2029,21 +2040,17 @@ def _run_M(m, X):
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx
-        axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx
-        rrr_Q_t_3 = (
+        rrr_Q_t = (
         inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x + rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x -
             inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy -
             rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
         )
-        rrr_Q_t_4 = 0.5*rrr_Q_t_3
-        rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_6
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
         # (M_ta) coupling block of M
         rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
         rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
@@ -2114,9 +2121,12 @@ def _run_Z(m, X, V):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
+    # (f_p) inertia force of the platform less its weight
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = W_p_xx*h_star_y
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = W_p_xx*h_star_x - Z_p_t
-    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
+    Z_p_x = f_p_t - Z_p_t
+    Z_p_y = f_p_t_2 - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     Z_t_rrr_x, Z_t_rrr_y, Z_a_rrr_z = [0.0] * 3
@@ -2172,22 +2182,24 @@ def _run_Z(m, X, V):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
-        rrr_qd_1_t_3 = (
+        rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
-            rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -2196,12 +2208,13 @@ def _run_Z(m, X, V):
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
@@ -2209,36 +2222,37 @@ def _run_Z(m, X, V):
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_in_axes2_x = (
-        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_o_in_axes2_y = (
-        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = -rrr_mu_1_t_3 - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-U) velocity and gravity terms of the leg force
         rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
@@ -2322,20 +2336,17 @@ def _run_H(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_t_3 = (
-        inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_t_3 = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         rrr_H_a_1_z = rrr_q_x*rrr_w_1_y + rrr_q_y*rrr_w_1_t_3
         ok = (
@@ -2391,8 +2402,10 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     # (f_p) inertia force of the platform less its weight
-    f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y
-    f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = W_p_xx*h_star_y
+    f_p_x = f_p_t + a_t_x*m_star - alpha_z*h_star_y
+    f_p_y = f_p_t_2 + a_t_y*m_star + alpha_z*h_star_x
     # (mu_p) inertia moment of the platform less that of its weight
     mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_a_rrr_z = [0.0] * 3
@@ -2459,67 +2472,70 @@ def _run_required(m, X, V, A):
         rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
-            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_in_axes2_y
         rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_in_axes2_x
@@ -2579,8 +2595,10 @@ def _run_inverse_kinematics(m, X):
             rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
@@ -2594,19 +2612,23 @@ def _run_inverse_kinematics(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-q_1) displacement of joint 1
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
-        rrr_q_1 = (
-        atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
-            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
-        )
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-q_1) displacement of joint 1
+        rrr_q_1 = atan2(rrr_s_1, rrr_c_1)
         # (rrr-x_2) from the origin of joint 2 to the connection point
         rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-q_2) displacement of joint 2
-        rrr_q_2 = (
-        atan2(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x)
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-q_2) displacement of joint 2
+        rrr_q_2 = atan2(rrr_s_2, rrr_c_2)
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
@@ -2615,7 +2637,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 159 mul, 84 add, 6 div, 3 sqrt, 0 trig
+# joint_rates: 162 mul, 84 add, 6 div, 3 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2678,31 +2700,36 @@ def _run_joint_rates(m, X, V):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y
-        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
         rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
-        rrr_qd_1_t_3 = (
-        (axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y
+        rrr_qd_1_t = (
+        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
-            rrr_qd_1_t_3*(rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2))
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-qd_1) rate of joint 1
-        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1_t_3
+        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1_t
         # (rrr-qd_2) rate of joint 2
         out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     return ok, (out_qd,)
@@ -2788,41 +2815,45 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
-        rrr_qd_1_t_3 = (
+        rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
-            rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
-        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_in_axes2_x = (
-        axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
-        )
-        rrr_rel_in_axes2_y = (
-        axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        )
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-qdd_1) acceleration of joint 1
         rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
@@ -2933,67 +2964,70 @@ def _run_legs(m, X, V, A):
         rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
-            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
         rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass
@@ -3034,11 +3068,11 @@ def _run_potential(m, X):
     R_yx = sin(X_2)
     ok = True
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (potential) potential energy
-    potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x - R_yx*h_star_in_platform_y) +
-        gravity_y*(R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x + m_star*t_y)
-    )
+    potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
@@ -3050,8 +3084,10 @@ def _run_potential(m, X):
             rrr_platform_point_y, rrr_potential_t, rrr_potential_t_2, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
@@ -3078,14 +3114,16 @@ def _run_potential(m, X):
         rrr_s_2 = (
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
         # (potential) potential energy
         rrr_potential_t_3 = (
-        (rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x +
-            rrr_c_2*rrr_h_2_in_spec2_x + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
-            rrr_potential_t_2*rrr_s_1) - rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
-            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
-            rrr_potential_t*rrr_s_1))
+        rrr_g_in_axes1_x*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
+            rrr_h_2_in_spec2_y*rrr_s_2) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
+            rrr_c_2*rrr_h_2_in_spec2_y + rrr_h_2_in_spec2_x*rrr_s_2 +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 - rrr_potential_t*rrr_s_1))
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
@@ -3163,20 +3201,17 @@ def _run_condition(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_t_3 = (
-        inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_t_3 = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_pivot_size = abs(rrr_rho2_1)
         rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
@@ -3365,12 +3400,12 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[[0, 2, 4]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
-    gap = _wrapped(subtract_1, [0, 1, 2])
-    return (gap,)
+    residual = _wrapped(subtract_1, [0, 1, 2])
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -3379,7 +3414,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

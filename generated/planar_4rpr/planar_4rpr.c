@@ -147,9 +147,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -211,6 +211,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -259,7 +283,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -269,7 +293,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -282,7 +306,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -299,16 +323,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -316,7 +340,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1173,8 +1206,8 @@ INLINE void doubt(int known, int found, real *unreachable, real *overflow)
     *unreachable += UNLESS(found || !known);
 }
 
-/* The bound that is missed by most, n if none; sign is 1 for a lower, -1 for an upper one. */
-static size_t missed_bound(size_t n, const real *start, const real *t, const real *least,
+/* The bound that is violated by most, n if none; sign is 1 for a lower, -1 for an upper one. */
+static size_t violated_bound(size_t n, const real *start, const real *t, const real *least,
         const real *most, const real *side, real *sign)
 {
     const real size = largest(start, n), endless = largest(start + n, n);
@@ -1182,13 +1215,13 @@ static size_t missed_bound(size_t n, const real *start, const real *t, const rea
     size_t worst = n;
     for (size_t k = 0; k < 2*n; ++k) {
         const size_t i = k < n ? k : k - n;
-        const real s = k < n ? 1 : -1, bound = k < n ? least[i] : most[i], gap = s*(bound - t[i]);
+        const real s = k < n ? 1 : -1, bound = k < n ? least[i] : most[i], excess = s*(bound - t[i]);
         const real rate = magnitude(t[n + i]) > PIVOT*endless ? -s*t[n + i] : 0;
-        const int is_missed = rate > 0 || (rate >= 0 && gap > PIVOT*(size + magnitude(bound)));
-        if (is_missed && is_finite(bound) && !(magnitude(side[i]) > 0)
-            && (rate > second || (rate >= second && gap > first))) {
+        const int is_violated = rate > 0 || (rate >= 0 && excess > PIVOT*(size + magnitude(bound)));
+        if (is_violated && is_finite(bound) && !(magnitude(side[i]) > 0)
+            && (rate > second || (rate >= second && excess > first))) {
             worst = i;
-            first = gap;
+            first = excess;
             second = rate;
             *sign = s;
         }
@@ -1210,11 +1243,11 @@ static void at_bounds(size_t n, const real *gram, const real *side, const real *
     solve_one(n, stride, rows, x, &unsure);
 }
 
-/* Points from amounts of the normals. */
-static void moved_by(size_t n, const real *start, const real *gram, const real *amounts, real *t)
+/* Points from coefficients of the normals. */
+static void moved_by(size_t n, const real *start, const real *gram, const real *coefficients, real *t)
 {
     for (size_t e = 0; e < 2*n; ++e) {
-        const real *const row = gram + e%n*n, *const own = amounts + (e < n ? 0 : n);
+        const real *const row = gram + e%n*n, *const own = coefficients + (e < n ? 0 : n);
         t[e] = start[e];
         for (size_t j = 0; j < n; ++j) {
             t[e] += row[j]*own[j];
@@ -1226,14 +1259,14 @@ static void moved_by(size_t n, const real *start, const real *gram, const real *
 static void settle(size_t n, const real *start, const real *gram, const real *least,
         const real *most, const real *side, real *t)
 {
-    real amounts[2*BIG] = {0}, right[2*BIG] = {0};
+    real coefficients[2*BIG] = {0}, right[2*BIG] = {0};
     for (size_t i = 0; i < n; ++i) {
         right[i] = (side[i] > 0 ? least[i] : most[i]) - start[i];
         right[n + i] = -start[n + i];
     }
-    at_bounds(n, gram, side, right, amounts);
-    at_bounds(n, gram, side, right + n, amounts + n);
-    moved_by(n, start, gram, amounts, t);
+    at_bounds(n, gram, side, right, coefficients);
+    at_bounds(n, gram, side, right + n, coefficients + n);
+    moved_by(n, start, gram, coefficients, t);
     for (size_t i = 0; i < n; ++i) {
         t[i] = side[i] > 0 || t[i] < least[i] ? least[i] : side[i] < 0 || t[i] > most[i] ? most[i] : t[i];
     }
@@ -1245,11 +1278,11 @@ static void settle(size_t n, const real *start, const real *gram, const real *le
 static int nearest_point(size_t n, const real *start, const real *gram, const real *least,
         const real *most, real *t)
 {
-    real amounts[2*BIG] = {0}, side[BIG] = {0}, right[BIG] = {0}, without[BIG] = {0}, sign = 0;
+    real coefficients[2*BIG] = {0}, side[BIG] = {0}, right[BIG] = {0}, without[BIG] = {0}, sign = 0;
     size_t p = n;
     for (size_t turn = 0; turn < TURNS*n; ++turn) {
-        moved_by(n, start, gram, amounts, t);
-        p = p < n ? p : missed_bound(n, start, t, least, most, side, &sign);
+        moved_by(n, start, gram, coefficients, t);
+        p = p < n ? p : violated_bound(n, start, t, least, most, side, &sign);
         if (p >= n) {
             settle(n, start, gram, least, most, side, t);
             return 1;
@@ -1273,7 +1306,7 @@ static int nearest_point(size_t n, const real *start, const real *gram, const re
         }
         for (size_t i = 0; i < n; ++i) {
             const real share = side[i]*without[i] > clear ? without[i] : R(INFINITY);
-            const real shift = amounts[i]/share, rate = amounts[n + i]/share;
+            const real shift = coefficients[i]/share, rate = coefficients[n + i]/share;
             if (is_finite(share)
                 && (leaving == 2*n || rate < second || (rate <= second && shift < first))) {
                 leaving = i;
@@ -1285,16 +1318,16 @@ static int nearest_point(size_t n, const real *start, const real *gram, const re
             return 0;
         }
         for (size_t i = 0; i < n; ++i) {
-            amounts[i] -= without[i]*first;
-            amounts[n + i] -= without[i]*second;
+            coefficients[i] -= without[i]*first;
+            coefficients[n + i] -= without[i]*second;
         }
-        amounts[p] += sign*first;
-        amounts[n + p] += sign*second;
+        coefficients[p] += sign*first;
+        coefficients[n + p] += sign*second;
         if (leaving == n) {
             side[p] = sign;
             p = n;
         } else {
-            side[leaving] = amounts[leaving] = amounts[n + leaving] = 0;
+            side[leaving] = coefficients[leaving] = coefficients[n + leaving] = 0;
         }
     }
     return 0;
@@ -1344,38 +1377,42 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real W_p_xx, R_xx, R_yx, h_star_x, h_star_y;
+    real W_p_xx, R_xx, R_yx, h_star_x, h_star_y, f_p_t, f_p_t_2;
 } values;
 
 INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
 {
     /* (W_p) centripetal tensor of the platform */
     const real omega_z = V[2*w + k];
-    const real W_p_xx = -omega_z*omega_z;
-    v->W_p_xx = W_p_xx;
+    v->W_p_xx = -omega_z*omega_z;
 }
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
     /* X: named entries */
     const real X_2 = X[2*w + k];
-    const real R_xx = cosine(X_2);
-    const real R_yx = sine(X_2);
+    v->R_xx = cosine(X_2);
+    v->R_yx = sine(X_2);
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x - R_yx*m->h_star_in_platform_y;
-    const real h_star_y = R_xx*m->h_star_in_platform_y + R_yx*m->h_star_in_platform_x;
-    v->R_xx = R_xx;
-    v->R_yx = R_yx;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
+    v->h_star_x = v->R_xx*m->h_star_in_platform_x - v->R_yx*m->h_star_in_platform_y;
+    v->h_star_y = v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x;
+}
+
+INLINE void stage_V_X(values *v)
+{
+    /* (f_p) inertia force of the platform less its weight */
+    v->f_p_t = v->W_p_xx*v->h_star_x;
+    v->f_p_t_2 = v->W_p_xx*v->h_star_y;
 }
 
 typedef struct {
-    real rpr_q_x, rpr_q_y, rpr_S_in_turn1_x, rpr_S_in_turn1_y, rpr_q_2_t, rpr_q_2, inv_rpr_q_2,
-        axis_x_rpr_axes1_x, axis_x_rpr_axes1_y, rpr_w_1_in_axes1_y, rpr_w_2_x, rpr_w_2_y, rpr_a_p_x,
-        rpr_a_p_y, rpr_S_dot_t, rpr_S_dot_t_2, rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_in_axes1_xx,
-        rpr_S_ddot_x, rpr_S_ddot_y, rpr_U_x, rpr_U_y, rpr_Z_a_t, rpr_qdd_1, rpr_acc_2_in_axes1_x,
-        rpr_acc_2_in_axes1_y, rpr_c_in_axes1_y;
+    real rpr_q_x, rpr_q_y, rpr_q_2_t, rpr_q_2, inv_rpr_q_2, axis_x_rpr_axes1_x, axis_x_rpr_axes1_y,
+        rpr_H_a_2_z, rpr_c_1, rpr_s_1, rpr_g_in_axes1_x, rpr_g_in_axes1_y, rpr_a_p_x, rpr_a_p_y,
+        rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_in_axes1_xx, rpr_u_1_t, rpr_u_1_y,
+        rpr_bias_in_axes1_y, rpr_phi_2_t, rpr_c_t, rpr_S_ddot_in_axes1_x, rpr_S_ddot_in_axes1_y,
+        rpr_qdd_1, rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_U_x,
+        rpr_U_y, rpr_Z_a_t, rpr_acc_2_in_axes1_x, rpr_acc_2_in_axes1_y, rpr_phi_2_in_axes1_x,
+        rpr_c_in_axes1_y;
 } values_rpr;
 
 INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1384,41 +1421,33 @@ INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rpr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rpr_q_x = R_xx*m->rpr_platform_point_x[i] - R_yx*m->rpr_platform_point_y[i];
-    const real rpr_q_y = R_xx*m->rpr_platform_point_y[i] + R_yx*m->rpr_platform_point_x[i];
+    v->rpr_q_x = R_xx*m->rpr_platform_point_x[i] - R_yx*m->rpr_platform_point_y[i];
+    v->rpr_q_y = R_xx*m->rpr_platform_point_y[i] + R_yx*m->rpr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rpr_S_x = t_x - m->rpr_base_point_x[i] + rpr_q_x;
+    const real rpr_S_x = t_x - m->rpr_base_point_x[i] + v->rpr_q_x;
     const real t_y = X[1*w + j];
-    const real rpr_S_y = t_y - m->rpr_base_point_y[i] + rpr_q_y;
+    const real rpr_S_y = t_y - m->rpr_base_point_y[i] + v->rpr_q_y;
     const real rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] +
         rpr_S_y*m->rpr_base_frame_yx[i];
     const real rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] +
         rpr_S_y*m->rpr_base_frame_yy[i];
     /* (rpr-q_2) displacement of joint 2 */
-    const real rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x +
-        rpr_S_in_turn1_y*rpr_S_in_turn1_y;
-    const real rpr_q_2 = m->rpr_branch_1[i]*root(rpr_q_2_t);
+    v->rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y;
+    v->rpr_q_2 = m->rpr_branch_1[i]*root(v->rpr_q_2_t);
+    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    v->inv_rpr_q_2 = 1/v->rpr_q_2;
     /* (rpr-S_dot) velocity of the connection point */
-    const real inv_rpr_q_2 = 1/rpr_q_2;
-    const real axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x;
-    const real axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y;
-    /* (rpr-w_1) reciprocal vector 1 */
-    const real rpr_w_1_in_axes1_y = 1/rpr_q_2;
-    /* (rpr-w_2) reciprocal vector 2 */
-    const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
-    const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
-    v->rpr_q_x = rpr_q_x;
-    v->rpr_q_y = rpr_q_y;
-    v->rpr_S_in_turn1_x = rpr_S_in_turn1_x;
-    v->rpr_S_in_turn1_y = rpr_S_in_turn1_y;
-    v->rpr_q_2_t = rpr_q_2_t;
-    v->rpr_q_2 = rpr_q_2;
-    v->inv_rpr_q_2 = inv_rpr_q_2;
-    v->axis_x_rpr_axes1_x = axis_x_rpr_axes1_x;
-    v->axis_x_rpr_axes1_y = axis_x_rpr_axes1_y;
-    v->rpr_w_1_in_axes1_y = rpr_w_1_in_axes1_y;
-    v->rpr_w_2_x = rpr_w_2_x;
-    v->rpr_w_2_y = rpr_w_2_y;
+    v->axis_x_rpr_axes1_x = v->inv_rpr_q_2*rpr_S_x;
+    v->axis_x_rpr_axes1_y = v->inv_rpr_q_2*rpr_S_y;
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    v->rpr_H_a_2_z = v->axis_x_rpr_axes1_y*v->rpr_q_x - v->axis_x_rpr_axes1_x*v->rpr_q_y;
+    /* (rpr-c_1) */
+    v->rpr_c_1 = v->inv_rpr_q_2*rpr_S_in_turn1_x;
+    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+    v->rpr_s_1 = v->inv_rpr_q_2*rpr_S_in_turn1_y;
+    /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->rpr_g_in_axes1_x = m->rpr_acc_2_t[i]*v->rpr_c_1 + m->rpr_acc_2_t_2[i]*v->rpr_s_1;
+    v->rpr_g_in_axes1_y = m->rpr_acc_2_t_2[i]*v->rpr_c_1 - m->rpr_acc_2_t[i]*v->rpr_s_1;
 }
 
 INLINE void stage_rpr_A_X(size_t w, size_t j, const real *A, values_rpr *v)
@@ -1426,14 +1455,13 @@ INLINE void stage_rpr_A_X(size_t w, size_t j, const real *A, values_rpr *v)
     /* (rpr-a_p) acceleration of the connection point without its centripetal part */
     const real alpha_z = A[2*w + j];
     const real t_ddot_x = A[0*w + j];
-    const real rpr_a_p_x = t_ddot_x - alpha_z*v->rpr_q_y;
+    v->rpr_a_p_x = t_ddot_x - alpha_z*v->rpr_q_y;
     const real t_ddot_y = A[1*w + j];
-    const real rpr_a_p_y = t_ddot_y + alpha_z*v->rpr_q_x;
-    v->rpr_a_p_x = rpr_a_p_x;
-    v->rpr_a_p_y = rpr_a_p_y;
+    v->rpr_a_p_y = t_ddot_y + alpha_z*v->rpr_q_x;
 }
 
-INLINE void stage_rpr_V_X(size_t w, size_t j, const real *V, values_rpr *v)
+INLINE void stage_rpr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rpr *v)
 {
     /* (rpr-S_dot) velocity of the connection point */
     const real omega_z = V[2*w + j];
@@ -1443,143 +1471,122 @@ INLINE void stage_rpr_V_X(size_t w, size_t j, const real *V, values_rpr *v)
     const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
     const real t_dot_y = V[1*w + j];
     const real rpr_S_dot_y = t_dot_y + rpr_S_dot_t_2;
-    const real rpr_S_dot_in_axes1_x = v->axis_x_rpr_axes1_x*rpr_S_dot_x +
+    v->rpr_S_dot_in_axes1_x = v->axis_x_rpr_axes1_x*rpr_S_dot_x +
         v->axis_x_rpr_axes1_y*rpr_S_dot_y;
     /* (rpr-qd_1) rate of joint 1 */
-    const real rpr_qd_1 = v->inv_rpr_q_2*(v->axis_x_rpr_axes1_x*rpr_S_dot_y -
+    v->rpr_qd_1 = v->inv_rpr_q_2*(v->axis_x_rpr_axes1_x*rpr_S_dot_y -
         v->axis_x_rpr_axes1_y*rpr_S_dot_x);
     /* (rpr-W_1) centripetal tensor of link 1 */
-    const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
-    v->rpr_S_dot_t = rpr_S_dot_t;
-    v->rpr_S_dot_t_2 = rpr_S_dot_t_2;
-    v->rpr_S_dot_in_axes1_x = rpr_S_dot_in_axes1_x;
-    v->rpr_qd_1 = rpr_qd_1;
-    v->rpr_W_1_in_axes1_xx = rpr_W_1_in_axes1_xx;
+    v->rpr_W_1_in_axes1_xx = -v->rpr_qd_1*v->rpr_qd_1;
+    /* (rpr-u_1) centripetal acceleration of the connection point */
+    v->rpr_u_1_t = omega_z*rpr_S_dot_t_2;
+    v->rpr_u_1_y = -omega_z*rpr_S_dot_t;
+    /* (rpr-bias) acceleration of the connection point at zero joint accelerations */
+    v->rpr_bias_in_axes1_y = 2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
+    /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
+    v->rpr_phi_2_t = v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i];
+    /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->rpr_c_t = -v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i];
 }
 
-INLINE void stage_rpr_A_V_X(size_t w, size_t j, const real *V, values_rpr *v)
+INLINE void stage_rpr_A_V_X(values_rpr *v)
 {
     /* (rpr-S_ddot) acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real rpr_S_ddot_x = v->rpr_a_p_x - omega_z*v->rpr_S_dot_t_2;
-    const real rpr_S_ddot_y = v->rpr_a_p_y - omega_z*v->rpr_S_dot_t;
-    v->rpr_S_ddot_x = rpr_S_ddot_x;
-    v->rpr_S_ddot_y = rpr_S_ddot_y;
+    const real rpr_S_ddot_x = v->rpr_a_p_x - v->rpr_u_1_t;
+    const real rpr_S_ddot_y = v->rpr_a_p_y + v->rpr_u_1_y;
+    v->rpr_S_ddot_in_axes1_x = v->axis_x_rpr_axes1_x*rpr_S_ddot_x +
+        v->axis_x_rpr_axes1_y*rpr_S_ddot_y;
+    v->rpr_S_ddot_in_axes1_y = v->axis_x_rpr_axes1_x*rpr_S_ddot_y -
+        v->axis_x_rpr_axes1_y*rpr_S_ddot_x;
+    /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rpr_rel_in_axes1_y = v->rpr_S_ddot_in_axes1_y - v->rpr_bias_in_axes1_y;
+    /* (rpr-qdd_1) acceleration of joint 1 */
+    v->rpr_qdd_1 = v->inv_rpr_q_2*rpr_rel_in_axes1_y;
 }
 
-INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_rpr *v)
+INLINE void stage_rpr_M_dynamics(const prepared *m, size_t i, values_rpr *v)
+{
+    /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rpr_d_c_in_axes1_xy = v->inv_rpr_q_2*m->rpr_h_2_in_spec1_y[i];
+    const real rpr_d_c_in_axes1_yy = -v->inv_rpr_q_2*m->rpr_h_2_in_spec1_x[i] -
+        v->inv_rpr_q_2*(m->rpr_h_2_in_spec1_x[i] +
+        v->inv_rpr_q_2*m->rpr_J_group_1_in_axes1_zz[i]);
+    /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
+    const real rpr_Q_t_2 = v->axis_x_rpr_axes1_y*rpr_Q_t -
+        v->axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
+    const real rpr_Q_t_3 = v->axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy +
+        v->axis_x_rpr_axes1_x*rpr_Q_t;
+    v->rpr_Q_xx = -2*v->axis_x_rpr_axes1_y*rpr_Q_t_2;
+    v->rpr_Q_xy = v->axis_x_rpr_axes1_x*rpr_Q_t_2 + v->axis_x_rpr_axes1_y*rpr_Q_t_3;
+    v->rpr_Q_yy = -2*v->axis_x_rpr_axes1_x*rpr_Q_t_3;
+    /* (M_ta) coupling block of M */
+    v->rpr_M_ta_t = v->rpr_Q_xy*v->rpr_q_x - v->rpr_Q_xx*v->rpr_q_y;
+    v->rpr_M_ta_t_2 = v->rpr_Q_yy*v->rpr_q_x - v->rpr_Q_xy*v->rpr_q_y;
+    /* (M_aa) rotational block of M */
+    v->rpr_M_aa_t = v->rpr_M_ta_t_2*v->rpr_q_x - v->rpr_M_ta_t*v->rpr_q_y;
+}
+
+INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
 {
     /* (rpr-u_1) centripetal acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real rpr_u_1_t = omega_z*v->rpr_S_dot_t_2;
-    const real rpr_u_1_y = -omega_z*v->rpr_S_dot_t;
-    const real rpr_u_1_in_axes1_y = v->axis_x_rpr_axes1_x*rpr_u_1_y +
-        v->axis_x_rpr_axes1_y*rpr_u_1_t;
+    const real rpr_u_1_in_axes1_y = v->axis_x_rpr_axes1_x*v->rpr_u_1_y +
+        v->axis_x_rpr_axes1_y*v->rpr_u_1_t;
     /* (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
-    const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y -
-        2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
+    const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - v->rpr_bias_in_axes1_y;
     /* (rpr-qdd_1_o) remainder of: acceleration of joint 1 */
     const real rpr_qdd_1_o = v->inv_rpr_q_2*rpr_rel_o_in_axes1_y;
     /* (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rpr_g_in_axes1_x = v->axis_x_rpr_axes1_x*m->gravity_x +
+    const real rpr_g_in_axes1_x_2 = v->axis_x_rpr_axes1_x*m->gravity_x +
         v->axis_x_rpr_axes1_y*m->gravity_y;
-    const real rpr_g_in_axes1_y = v->axis_x_rpr_axes1_x*m->gravity_y -
+    const real rpr_g_in_axes1_y_2 = v->axis_x_rpr_axes1_x*m->gravity_y -
         v->axis_x_rpr_axes1_y*m->gravity_x;
-    const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*rpr_u_1_y -
-        v->axis_x_rpr_axes1_x*rpr_u_1_t - rpr_g_in_axes1_x;
-    const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
+    const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*v->rpr_u_1_y -
+        v->axis_x_rpr_axes1_x*v->rpr_u_1_t - rpr_g_in_axes1_x_2;
+    const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y_2;
     /* (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
        */
-    const real rpr_phi_2_o_in_axes1_x = v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i] -
-        m->rpr_h_2_in_spec1_y[i]*rpr_qdd_1_o;
+    const real rpr_phi_2_o_in_axes1_x = v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*rpr_qdd_1_o;
     /* (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rpr_mu_1_o_in_axes1_z = rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
-        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
+    const real rpr_mu_1_o_in_axes1_z = rpr_g_in_axes1_x_2*m->rpr_h_1_in_spec1_y[i] -
+        rpr_g_in_axes1_y_2*m->rpr_h_1_in_spec1_x[i] +
         rpr_acc_2_o_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
         rpr_acc_2_o_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
         m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1_o;
     /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real rpr_c_o_in_axes1_y = -v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] -
-        m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1_o - v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
+    const real rpr_c_o_in_axes1_y = v->rpr_c_t - m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1_o -
+        v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
     /* (rpr-U) velocity and gravity terms of the leg force */
-    const real rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
+    v->rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
         v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
-    const real rpr_U_y = v->axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
+    v->rpr_U_y = v->axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
         v->axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
     /* (Z_a) rotational part of Z */
-    const real rpr_Z_a_t = rpr_U_y*v->rpr_q_x - rpr_U_x*v->rpr_q_y;
-    v->rpr_U_x = rpr_U_x;
-    v->rpr_U_y = rpr_U_y;
-    v->rpr_Z_a_t = rpr_Z_a_t;
-}
-
-INLINE void stage_rpr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_rpr *v)
-{
-    /* (rpr-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_yx = s[1*w + j];
-    const real t_x = X[0*w + j];
-    const real rpr_S_x = t_x - m->rpr_base_point_x[i] + R_xx*m->rpr_platform_point_x[i] -
-        R_yx*m->rpr_platform_point_y[i];
-    const real t_y = X[1*w + j];
-    const real rpr_S_y = t_y - m->rpr_base_point_y[i] + R_xx*m->rpr_platform_point_y[i] +
-        R_yx*m->rpr_platform_point_x[i];
-    const real rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] +
-        rpr_S_y*m->rpr_base_frame_yx[i];
-    const real rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] +
-        rpr_S_y*m->rpr_base_frame_yy[i];
-    /* (rpr-q_2) displacement of joint 2 */
-    const real rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x +
-        rpr_S_in_turn1_y*rpr_S_in_turn1_y;
-    const real rpr_q_2 = m->rpr_branch_1[i]*root(rpr_q_2_t);
-    /* (rpr-q_1) displacement of joint 1 */
-    const real inv_rpr_q_2 = 1/rpr_q_2;
-    v->rpr_S_in_turn1_x = rpr_S_in_turn1_x;
-    v->rpr_S_in_turn1_y = rpr_S_in_turn1_y;
-    v->rpr_q_2_t = rpr_q_2_t;
-    v->rpr_q_2 = rpr_q_2;
-    v->inv_rpr_q_2 = inv_rpr_q_2;
+    v->rpr_Z_a_t = v->rpr_U_y*v->rpr_q_x - v->rpr_U_x*v->rpr_q_y;
 }
 
 INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
 {
-    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real rpr_c_1 = v->inv_rpr_q_2*v->rpr_S_in_turn1_x;
-    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rpr_s_1 = v->inv_rpr_q_2*v->rpr_S_in_turn1_y;
-    /* (rpr-S_ddot) acceleration of the connection point */
-    const real rpr_S_ddot_in_axes1_y = v->axis_x_rpr_axes1_x*v->rpr_S_ddot_y -
-        v->axis_x_rpr_axes1_y*v->rpr_S_ddot_x;
-    /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y -
-        2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
-    /* (rpr-qdd_1) acceleration of joint 1 */
-    const real rpr_qdd_1 = v->inv_rpr_q_2*rpr_rel_in_axes1_y;
     /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rpr_g_in_axes1_x = m->rpr_acc_2_t[i]*rpr_c_1 + m->rpr_acc_2_t_2[i]*rpr_s_1;
-    const real rpr_g_in_axes1_y = m->rpr_acc_2_t_2[i]*rpr_c_1 - m->rpr_acc_2_t[i]*rpr_s_1;
-    const real rpr_acc_2_in_axes1_x = v->axis_x_rpr_axes1_x*v->rpr_S_ddot_x +
-        v->axis_x_rpr_axes1_y*v->rpr_S_ddot_y - rpr_g_in_axes1_x;
-    const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
+    v->rpr_acc_2_in_axes1_x = v->rpr_S_ddot_in_axes1_x - v->rpr_g_in_axes1_x;
+    v->rpr_acc_2_in_axes1_y = v->rpr_S_ddot_in_axes1_y - v->rpr_g_in_axes1_y;
+    /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
+    v->rpr_phi_2_in_axes1_x = v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*v->rpr_qdd_1;
     /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rpr_mu_1_in_axes1_z = rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
-        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
-        rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
-        rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
-        m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1;
+    const real rpr_mu_1_in_axes1_z = v->rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
+        v->rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
+        v->rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
+        v->rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
+        m->rpr_J_group_1_in_axes1_zz[i]*v->rpr_qdd_1;
     /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rpr_c_in_axes1_y = -v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] -
-        m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1 - v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
-    v->rpr_qdd_1 = rpr_qdd_1;
-    v->rpr_acc_2_in_axes1_x = rpr_acc_2_in_axes1_x;
-    v->rpr_acc_2_in_axes1_y = rpr_acc_2_in_axes1_y;
-    v->rpr_c_in_axes1_y = rpr_c_in_axes1_y;
+    v->rpr_c_in_axes1_y = v->rpr_c_t - m->rpr_h_2_in_spec1_x[i]*v->rpr_qdd_1 -
+        v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
@@ -1599,9 +1606,10 @@ INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *
     *s)
 {
     stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
-    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->f_p_t - m->Z_p_t;
+    const real Z_p_y = v->f_p_t_2 - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[4*w + k] = Z_p_x;
@@ -1614,39 +1622,18 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    stage_rpr_V_X(w, j, V, &v);
-    stage_rpr_Z_dynamics(m, w, i, j, V, &v);
-    /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rpr_d_c_in_axes1_xy = v.inv_rpr_q_2*m->rpr_h_2_in_spec1_y[i];
-    const real rpr_d_c_in_axes1_yy = -v.inv_rpr_q_2*m->rpr_h_2_in_spec1_x[i] -
-        v.inv_rpr_q_2*(m->rpr_h_2_in_spec1_x[i] +
-        v.inv_rpr_q_2*m->rpr_J_group_1_in_axes1_zz[i]);
-    /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
-    const real rpr_Q_t_2 = v.axis_x_rpr_axes1_y*rpr_Q_t -
-        v.axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
-    const real rpr_Q_t_3 = v.axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy +
-        v.axis_x_rpr_axes1_x*rpr_Q_t;
-    const real rpr_Q_xx = -2*v.axis_x_rpr_axes1_y*rpr_Q_t_2;
-    const real rpr_Q_xy = v.axis_x_rpr_axes1_x*rpr_Q_t_2 + v.axis_x_rpr_axes1_y*rpr_Q_t_3;
-    const real rpr_Q_yy = -2*v.axis_x_rpr_axes1_x*rpr_Q_t_3;
-    /* (M_ta) coupling block of M */
-    const real rpr_M_ta_t = rpr_Q_xy*v.rpr_q_x - rpr_Q_xx*v.rpr_q_y;
-    const real rpr_M_ta_t_2 = rpr_Q_yy*v.rpr_q_x - rpr_Q_xy*v.rpr_q_y;
-    /* (M_aa) rotational block of M */
-    const real rpr_M_aa_t = rpr_M_ta_t_2*v.rpr_q_x - rpr_M_ta_t*v.rpr_q_y;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    const real rpr_H_a_2_z = v.axis_x_rpr_axes1_y*v.rpr_q_x - v.axis_x_rpr_axes1_x*v.rpr_q_y;
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_M_dynamics(m, i, &v);
+    stage_rpr_Z_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rpr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, rpr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, rpr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.rpr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rpr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rpr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v.rpr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v.rpr_M_aa_t);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
     gather(&terms[6*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
     gather(&terms[7*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
@@ -1655,15 +1642,15 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     /* (rpr-w_2) reciprocal vector 2 */
     o[0*count + k] = v.axis_x_rpr_axes1_x;
     o[1*count + k] = v.axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) */
-    o[2*count + k] = rpr_H_a_2_z;
-    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + rpr_H_a_2_z);
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rpr_H_a_2_z;
+    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void dynamics_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1673,7 +1660,7 @@ INLINE void dynamics_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -1724,7 +1711,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     real s[7] = {0}, sums[9] = {0};
     real terms_rpr[9*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
@@ -1744,7 +1731,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
     real s[7*LANES], sums[9*LANES];
     real o_rpr[5*LANES];
@@ -1782,44 +1769,27 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rpr_d_c_in_axes1_xy = m->rpr_h_2_in_spec1_y[i]*v.rpr_w_1_in_axes1_y;
-    const real rpr_d_c_in_axes1_yy = -m->rpr_h_2_in_spec1_x[i]*v.rpr_w_1_in_axes1_y -
-        v.rpr_w_1_in_axes1_y*(m->rpr_h_2_in_spec1_x[i] +
-        m->rpr_J_group_1_in_axes1_zz[i]*v.rpr_w_1_in_axes1_y);
-    /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
-    const real rpr_Q_t_2 = rpr_Q_t*v.rpr_w_2_y - rpr_d_c_in_axes1_xy*v.rpr_w_2_x;
-    const real rpr_Q_t_3 = rpr_d_c_in_axes1_xy*v.rpr_w_2_y + rpr_Q_t*v.rpr_w_2_x;
-    const real rpr_Q_xx = -2*rpr_Q_t_2*v.rpr_w_2_y;
-    const real rpr_Q_xy = rpr_Q_t_2*v.rpr_w_2_x + rpr_Q_t_3*v.rpr_w_2_y;
-    const real rpr_Q_yy = -2*rpr_Q_t_3*v.rpr_w_2_x;
-    /* (M_ta) coupling block of M */
-    const real rpr_M_ta_t = rpr_Q_xy*v.rpr_q_x - rpr_Q_xx*v.rpr_q_y;
-    const real rpr_M_ta_t_2 = rpr_Q_yy*v.rpr_q_x - rpr_Q_xy*v.rpr_q_y;
-    /* (M_aa) rotational block of M */
-    const real rpr_M_aa_t = rpr_M_ta_t_2*v.rpr_q_x - rpr_M_ta_t*v.rpr_q_y;
+    stage_rpr_M_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rpr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, rpr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, rpr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.rpr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rpr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rpr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v.rpr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v.rpr_M_aa_t);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
-INLINE void M_place_rpr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -1852,7 +1822,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[4] = {0}, sums[6] = {0};
     real terms_rpr[6*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
@@ -1870,7 +1840,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
     real s[4*LANES], sums[6*LANES];
     real o_rpr[LANES];
@@ -1903,9 +1874,10 @@ INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, value
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
-    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->f_p_t - m->Z_p_t;
+    const real Z_p_y = v->f_p_t_2 - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[2*w + k] = Z_p_x;
@@ -1918,8 +1890,8 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    stage_rpr_V_X(w, j, V, &v);
-    stage_rpr_Z_dynamics(m, w, i, j, V, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_Z_dynamics(m, i, &v);
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
@@ -1929,12 +1901,12 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2);
 }
 
-INLINE void Z_place_rpr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
     const real Z_p_x = s[2*w + k];
@@ -1955,7 +1927,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
@@ -1974,8 +1946,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
     real s[5*LANES], sums[3*LANES];
     real o_rpr[LANES];
@@ -2011,20 +1983,18 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    const real rpr_H_a_2_z = v.rpr_q_x*v.rpr_w_2_y - v.rpr_q_y*v.rpr_w_2_x;
     /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.rpr_w_2_x;
-    o[1*count + k] = v.rpr_w_2_y;
-    /* (rpr-H_a_2) */
-    o[2*count + k] = rpr_H_a_2_z;
-    o[4*count + k] = v.rpr_w_2_x + (v.rpr_w_2_y + rpr_H_a_2_z);
+    o[0*count + k] = v.axis_x_rpr_axes1_x;
+    o[1*count + k] = v.axis_x_rpr_axes1_y;
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rpr_H_a_2_z;
+    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void H_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2033,7 +2003,7 @@ INLINE void H_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[4*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[2] = {0};
     real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
@@ -2047,7 +2017,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
     real s[2*LANES];
     real o_rpr[5*LANES];
@@ -2078,6 +2049,7 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     values *v, real *s)
 {
     stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -2085,8 +2057,8 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     /* (f_p) inertia force of the platform less its weight */
     const real alpha_z = A[2*w + k];
-    const real f_p_x = a_t_x*m->m_star + v->W_p_xx*v->h_star_x - alpha_z*v->h_star_y;
-    const real f_p_y = a_t_y*m->m_star + v->W_p_xx*v->h_star_y + alpha_z*v->h_star_x;
+    const real f_p_x = a_t_x*m->m_star - alpha_z*v->h_star_y + v->f_p_t;
+    const real f_p_y = a_t_y*m->m_star + alpha_z*v->h_star_x + v->f_p_t_2;
     /* (mu_p) inertia moment of the platform less that of its weight */
     const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v->h_star_x - a_t_x*v->h_star_y;
     s[2*w + k] = f_p_x;
@@ -2101,22 +2073,17 @@ INLINE void required_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_A_X(w, j, A, &v);
-    stage_rpr_V_X(w, j, V, &v);
-    stage_rpr_A_V_X(w, j, V, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_A_V_X(&v);
     stage_rpr_legs_required(m, i, &v);
-    /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
-    const real rpr_phi_2_in_axes1_x = v.rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i] -
-        m->rpr_h_2_in_spec1_y[i]*v.rpr_qdd_1;
     /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rpr_c_x = -v.axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x -
+    const real rpr_c_x = -v.axis_x_rpr_axes1_x*v.rpr_phi_2_in_axes1_x -
         v.axis_x_rpr_axes1_y*v.rpr_c_in_axes1_y;
     const real rpr_c_y = v.axis_x_rpr_axes1_x*v.rpr_c_in_axes1_y -
-        v.axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x;
+        v.axis_x_rpr_axes1_y*v.rpr_phi_2_in_axes1_x;
     /* (R_a) moment that actuators and external wrench must give */
     const real rpr_R_a_t = rpr_c_x*v.rpr_q_y - rpr_c_y*v.rpr_q_x;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    const real rpr_H_a_2_z = v.axis_x_rpr_axes1_y*v.rpr_q_x - v.axis_x_rpr_axes1_x*v.rpr_q_y;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rpr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rpr_c_y);  /* R_t_y_of_legs */
@@ -2125,14 +2092,14 @@ INLINE void required_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     /* (rpr-w_2) reciprocal vector 2 */
     o[0*count + k] = v.axis_x_rpr_axes1_x;
     o[1*count + k] = v.axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) */
-    o[2*count + k] = rpr_H_a_2_z;
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rpr_H_a_2_z;
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void required_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2161,7 +2128,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
@@ -2193,10 +2160,9 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
     size_t count, const real *s, const real *X, real *o)
 {
     values_rpr v;
-    stage_rpr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    stage_rpr_X(m, w, i, j, s, X, &v);
     /* (rpr-q_1) displacement of joint 1 */
-    const real rpr_q_1 = angle(v.inv_rpr_q_2*v.rpr_S_in_turn1_y,
-        v.inv_rpr_q_2*v.rpr_S_in_turn1_x);
+    const real rpr_q_1 = angle(v.rpr_s_1, v.rpr_c_1);
     /* (rpr-q_1) */
     o[0*count + k] = rpr_q_1;
     /* (rpr-q_2) displacement of joint 2 */
@@ -2207,7 +2173,7 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
 }
 
 INLINE void inverse_kinematics_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[2*i*w + k] = o[0*count + at];
     q[(1 + 2*i)*w + k] = o[1*count + at];
@@ -2215,7 +2181,7 @@ INLINE void inverse_kinematics_place_rpr(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[3*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
     real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
@@ -2230,7 +2196,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
     real s[2*LANES];
     real o_rpr[4*LANES];
@@ -2262,28 +2228,18 @@ INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    /* (rpr-S_dot) velocity of the connection point */
-    const real omega_z = V[2*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real rpr_S_dot_x = t_dot_x - omega_z*v.rpr_q_y;
-    const real t_dot_y = V[1*w + j];
-    const real rpr_S_dot_y = t_dot_y + omega_z*v.rpr_q_x;
-    const real rpr_S_dot_in_axes1_x = v.axis_x_rpr_axes1_x*rpr_S_dot_x +
-        v.axis_x_rpr_axes1_y*rpr_S_dot_y;
+    stage_rpr_V_X(m, w, i, j, V, &v);
     /* (rpr-qd_1) rate of joint 1 */
-    const real rpr_qd_1 = v.inv_rpr_q_2*(v.axis_x_rpr_axes1_x*rpr_S_dot_y -
-        v.axis_x_rpr_axes1_y*rpr_S_dot_x);
-    /* (rpr-qd_1) */
-    o[0*count + k] = rpr_qd_1;
+    o[0*count + k] = v.rpr_qd_1;
     /* (rpr-qd_2) rate of joint 2 */
-    o[1*count + k] = rpr_S_dot_in_axes1_x;
-    o[3*count + k] = rpr_qd_1 + rpr_S_dot_in_axes1_x;
+    o[1*count + k] = v.rpr_S_dot_in_axes1_x;
+    o[3*count + k] = v.rpr_qd_1 + v.rpr_S_dot_in_axes1_x;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void joint_rates_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[2*i*w + k] = o[0*count + at];
     qd[(1 + 2*i)*w + k] = o[1*count + at];
@@ -2291,7 +2247,8 @@ INLINE void joint_rates_place_rpr(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[3*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
     real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
@@ -2306,7 +2263,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
     real s[2*LANES];
     real o_rpr[4*LANES];
@@ -2339,26 +2296,21 @@ INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, 
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_A_X(w, j, A, &v);
-    stage_rpr_V_X(w, j, V, &v);
-    stage_rpr_A_V_X(w, j, V, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_A_V_X(&v);
     /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rpr_rel_in_axes1_x = v.axis_x_rpr_axes1_x*v.rpr_S_ddot_x +
-        v.axis_x_rpr_axes1_y*v.rpr_S_ddot_y + v.rpr_q_2*v.rpr_qd_1*v.rpr_qd_1;
-    const real rpr_rel_in_axes1_y = v.axis_x_rpr_axes1_x*v.rpr_S_ddot_y -
-        v.axis_x_rpr_axes1_y*v.rpr_S_ddot_x - 2*v.rpr_S_dot_in_axes1_x*v.rpr_qd_1;
+    const real rpr_rel_in_axes1_x = v.rpr_S_ddot_in_axes1_x - v.rpr_W_1_in_axes1_xx*v.rpr_q_2;
     /* (rpr-qdd_1) acceleration of joint 1 */
-    const real rpr_qdd_1 = v.inv_rpr_q_2*rpr_rel_in_axes1_y;
-    /* (rpr-qdd_1) */
-    o[0*count + k] = rpr_qdd_1;
+    o[0*count + k] = v.rpr_qdd_1;
     /* (rpr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = rpr_rel_in_axes1_x;
-    o[3*count + k] = rpr_qdd_1 + rpr_rel_in_axes1_x;
+    o[3*count + k] = v.rpr_qdd_1 + rpr_rel_in_axes1_x;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void joint_accelerations_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[2*i*w + k] = o[0*count + at];
     qdd[(1 + 2*i)*w + k] = o[1*count + at];
@@ -2367,7 +2319,7 @@ INLINE void joint_accelerations_place_rpr(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
     real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
@@ -2382,7 +2334,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
     real s[2*LANES];
     real o_rpr[4*LANES];
@@ -2414,13 +2366,12 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_A_X(w, j, A, &v);
-    stage_rpr_V_X(w, j, V, &v);
-    stage_rpr_A_V_X(w, j, V, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_A_V_X(&v);
     stage_rpr_legs_required(m, i, &v);
     /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
-    const real rpr_c_true_in_axes1_x = m->rpr_h_2_in_spec1_y[i]*v.rpr_qdd_1 -
-        v.rpr_acc_2_in_axes1_x*m->rpr_link2_mass[i] -
-        v.rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i];
+    const real rpr_c_true_in_axes1_x = -v.rpr_acc_2_in_axes1_x*m->rpr_link2_mass[i] -
+        v.rpr_phi_2_in_axes1_x;
     const real rpr_c_true_in_axes1_y = v.rpr_c_in_axes1_y -
         v.rpr_acc_2_in_axes1_y*m->rpr_link2_mass[i];
     const real rpr_c_true_x = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
@@ -2438,7 +2389,7 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[3*i*w + k] = o[0*count + at];
     leg_force[(3*i + 1)*w + k] = o[1*count + at];
@@ -2448,7 +2399,7 @@ INLINE void legs_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     real s[2] = {0};
     real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
@@ -2479,9 +2430,8 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
-    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xx*m->h_star_in_platform_x -
-        v->R_yx*m->h_star_in_platform_y) + m->gravity_y*(m->m_star*t_y +
-        v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x);
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
+        m->gravity_y*(m->m_star*t_y + v->h_star_y);
     s[2*w + k] = potential_t;
 }
 
@@ -2489,26 +2439,20 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
     values_rpr v;
-    stage_rpr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
-    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
+    stage_rpr_X(m, w, i, j, s, X, &v);
     /* (potential) */
-    const real rpr_potential_t_3 = (m->rpr_acc_2_t[i]*rpr_c_1 +
-        m->rpr_acc_2_t_2[i]*rpr_s_1)*(m->rpr_h_1_in_spec1_x[i] + m->rpr_h_2_in_spec1_x[i] +
-        m->rpr_link1_mass[i]*(rpr_c_1*m->rpr_potential_t[i] +
-        m->rpr_potential_t_2[i]*rpr_s_1)) + (m->rpr_acc_2_t_2[i]*rpr_c_1 -
-        m->rpr_acc_2_t[i]*rpr_s_1)*(m->rpr_h_1_in_spec1_y[i] + m->rpr_h_2_in_spec1_y[i] +
-        m->rpr_link1_mass[i]*(rpr_c_1*m->rpr_potential_t_2[i] -
-        m->rpr_potential_t[i]*rpr_s_1));
+    const real rpr_potential_t_3 = v.rpr_g_in_axes1_x*(m->rpr_h_1_in_spec1_x[i] +
+        m->rpr_h_2_in_spec1_x[i] + m->rpr_link1_mass[i]*(v.rpr_c_1*m->rpr_potential_t[i] +
+        m->rpr_potential_t_2[i]*v.rpr_s_1)) + v.rpr_g_in_axes1_y*(m->rpr_h_1_in_spec1_y[i] +
+        m->rpr_h_2_in_spec1_y[i] + m->rpr_link1_mass[i]*(v.rpr_c_1*m->rpr_potential_t_2[i] -
+        m->rpr_potential_t[i]*v.rpr_s_1));
     /* (potential) */
     gather(&terms[0*count + k], add, rpr_potential_t_3);  /* potential_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
-INLINE void potential_place_rpr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -2523,7 +2467,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
     real s[3] = {0}, sums[1] = {0};
     real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
@@ -2544,7 +2488,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2565,8 +2509,6 @@ INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rpr_pivot_size_2 = magnitude(v.rpr_q_2);
     const real rpr_least_pivots = lesser(R(1.6129032258064515)*root(rpr_pivot_size),
         R(1.6129032258064517)*rpr_pivot_size_2);
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    const real rpr_H_a_2_z = v.rpr_q_x*v.rpr_w_2_y - v.rpr_q_y*v.rpr_w_2_x;
     /* (spread) rms distance of the platform points from their centroid */
     const real rpr_spread_t = m->b_c_in_platform_x - m->rpr_platform_point_x[i];
     const real rpr_spread_t_2 = m->b_c_in_platform_y - m->rpr_platform_point_y[i];
@@ -2574,19 +2516,20 @@ INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
     /* (spread) */
     gather(&terms[0*count + k], add, rpr_spread_t_3);  /* spread_rpr */
     /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.rpr_w_2_x;
-    o[1*count + k] = v.rpr_w_2_y;
-    /* (rpr-H_a_2) */
-    o[2*count + k] = rpr_H_a_2_z;
+    o[0*count + k] = v.axis_x_rpr_axes1_x;
+    o[1*count + k] = v.axis_x_rpr_axes1_y;
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rpr_H_a_2_z;
     /* (rpr-G) */
     o[3*count + k] = rpr_least_pivots;
-    o[5*count + k] = (v.rpr_w_2_x + v.rpr_w_2_y) + (rpr_H_a_2_z + rpr_least_pivots);
+    o[5*count + k] = (v.axis_x_rpr_axes1_x + v.axis_x_rpr_axes1_y) + (v.rpr_H_a_2_z +
+        rpr_least_pivots);
     o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void condition_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *pivots, verdict *t)
+    *o, real *H, real *pivots, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2596,7 +2539,7 @@ INLINE void condition_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t 
     t->total[k] += o[5*count + at];
 }
 
-INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, verdict *t)
+INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_rpr = sums[0*w + k];
@@ -2607,7 +2550,7 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
     real s[2] = {0}, sums[1] = {0};
     real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[6*LEGS(LEGS_OF_rpr)] = {0};
@@ -2630,196 +2573,179 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int planar_4rpr_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int planar_4rpr_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int planar_4rpr_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int planar_4rpr_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int planar_4rpr_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int planar_4rpr_joint_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int planar_4rpr_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 static int inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
@@ -2829,14 +2755,9 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
     static const real no_weights[NU] = {1, 1, 1, 1};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, inverse_root_1[NU] = {0},
         scale_columns_1[NV*NU] = {0}, least_norm_1[NU] = {0}, tau[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     require_positive(NU, 1, weights, why.invalid);
     weights = optional(NU, weights, no_weights, why.invalid);
@@ -2854,9 +2775,7 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
     for (size_t i = 0; i < NU; ++i) {
         tau[i] = inverse_root_1[i]*least_norm_1[i];
     }
-    check(NU, 1, tau, why.overflow);
-    copy(NU, tau, tau_out);
-    return settled(&why, NU, tau_out);
+    return finished(NU, tau, tau_out, &why);
 }
 
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -2915,14 +2834,9 @@ int planar_4rpr_forward_dynamics(const prepared *m, const real *X, const real *V
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
         subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -2941,7 +2855,7 @@ int planar_4rpr_forward_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2950,7 +2864,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
         A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2965,8 +2879,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_3(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int planar_4rpr_complete_acceleration(const prepared *m, const real *X, const real *V, const real
@@ -2976,13 +2890,11 @@ int planar_4rpr_complete_acceleration(const prepared *m, const real *X, const re
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int planar_4rpr_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -2992,14 +2904,9 @@ int planar_4rpr_leg_reactions(const prepared *m, const real *X, const real *V, c
     static const size_t places_forces[] = {0, 1, 2, 3};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] = {0},
         leg_force[3*NL] = {0}, actuator[12] = {0}, forces[3*NL] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -3011,22 +2918,16 @@ int planar_4rpr_leg_reactions(const prepared *m, const real *X, const real *V, c
         forces[i] = leg_force[i];
     }
     add_forces(NL, 3, 1, places_forces, least_norm_1, actuator, forces);
-    check(3*NL, 1, forces, why.overflow);
-    copy(3*NL, forces, forces_out);
-    return settled(&why, 3*NL, forces_out);
+    return finished(3*NL, forces, forces_out, &why);
 }
 
 int planar_4rpr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -3035,21 +2936,19 @@ int planar_4rpr_energy(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int planar_4rpr_null_space(const prepared *m, const real *X, real *basis_out)
 {
     real H[NV*NU] = {0}, basis[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H, &why);
     null_basis(NV, NU, NV, H, basis);
-    check(NU, 1, basis, why.overflow);
-    copy(NU, basis, basis_out);
-    return settled(&why, NU, basis_out);
+    return finished(NU, basis, basis_out, &why);
 }
 
 int planar_4rpr_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -3059,9 +2958,9 @@ int planar_4rpr_condition(const prepared *m, const real *X, real *sigma_out, rea
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
         divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -3081,8 +2980,8 @@ int planar_4rpr_condition(const prepared *m, const real *X, real *sigma_out, rea
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int planar_4rpr_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -3092,13 +2991,12 @@ int planar_4rpr_manipulability(const prepared *m, const real *X, real *measure_o
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
         = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -3116,8 +3014,8 @@ int planar_4rpr_manipulability(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int planar_4rpr_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -3127,13 +3025,12 @@ int planar_4rpr_singularity_distance(const prepared *m, const real *X, real *act
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
         = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -3151,8 +3048,8 @@ int planar_4rpr_singularity_distance(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
 int planar_4rpr_force_distribution(const prepared *m, const real *X, const real *V, const real *A,
@@ -3164,17 +3061,10 @@ int planar_4rpr_force_distribution(const prepared *m, const real *X, const real 
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] = {0},
         null_basis_1[NU] = {0}, transposed_1[NU] = {0}, product_1[NU*NU] = {0}, times_1[NU] = {0},
         add_1[NU] = {0}, tau[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV) + total(tau_min, NU) +
-        total(tau_max, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-        check(NU, 1, tau_min, why.invalid);
-        check(NU, 1, tau_max, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
+    check_two(NU, tau_min, NU, tau_max, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     reference = optional(NU, reference, no_reference, why.invalid);
     required_run(m, X, V, A, required, H, &why);
@@ -3190,53 +3080,46 @@ int planar_4rpr_force_distribution(const prepared *m, const real *X, const real 
         add_1[i] = least_norm_1[i] + times_1[i];
     }
     nearest_within(NU, add_1, product_1, tau_min, tau_max, tau, why.unreachable, why.overflow);
-    check(NU, 1, tau, why.overflow);
-    copy(NU, tau, tau_out);
-    return settled(&why, NU, tau_out);
+    return finished(NU, tau, tau_out, &why);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_1[4] = {0}, gap[NU] = {0};
-    verdict why;
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_1[4] = {0}, residual[NU] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(4, 1, planar_4rpr_ACTUATED, q, q_of_inverse_kinematics_from_1);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_1[i];
+        residual[i] = q_actuated[i] - q_of_inverse_kinematics_from_1[i];
     }
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -3248,21 +3131,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -3276,17 +3159,11 @@ int planar_4rpr_forward_kinematics(const prepared *m, const real *q_actuated, co
     *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int planar_4rpr_dissipation(const prepared *m, const real *X, const real *V, real
@@ -3295,211 +3172,155 @@ int planar_4rpr_dissipation(const prepared *m, const real *X, const real *V, rea
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int planar_4rpr_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int planar_4rpr_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int planar_4rpr_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int planar_4rpr_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, planar_4rpr_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int planar_4rpr_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, planar_4rpr_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int planar_4rpr_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, planar_4rpr_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int planar_4rpr_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int planar_4rpr_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_2 = X + 2;
     rotation_of_angle(X_from_2, R);
-    check(4, 1, R, why.overflow);
-    copy(4, R, R_out);
-    return settled(&why, 4, R_out);
+    return finished(4, R, R_out, &why);
 }
 
 int planar_4rpr_pose(const real *t, const real *R, real *X_out)
 {
     real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 2) + total(R, 4);
-    if (!is_finite(total_in)) {
-        check(2, 1, t, why.invalid);
-        check(4, 1, R, why.invalid);
-    }
+    check_two(2, t, 4, R, why.invalid);
     angle_of_rotation(R, angle_of_rotation_1);
     beside(1, 2, 1, t, angle_of_rotation_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int planar_4rpr_X_dot(const real *X, const real *V, real *X_dot_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const X_dot = V;
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int planar_4rpr_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
+    check_two(NQ, X, NV, step, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int planar_4rpr_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] = {0}, step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
+    check_two(NQ, X0, NQ, X1, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -3507,39 +3328,23 @@ int planar_4rpr_difference(const real *X0, const real *X1, real *step_out)
         step[i] = subtract_1[i];
     }
     wrap_turns(1, 1, places_step, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int planar_4rpr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    static const size_t places_wrap_turns_1[] = {2};
-    real subtract_1[NQ] = {0}, wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
-    verdict why;
+    real wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    for (size_t i = 0; i < NQ; ++i) {
-        subtract_1[i] = X1[i] - X0[i];
-    }
-    for (size_t i = 0; i < NQ; ++i) {
-        wrap_turns_1[i] = subtract_1[i];
-    }
-    wrap_turns(1, 1, places_wrap_turns_1, wrap_turns_1);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(planar_4rpr_difference(X0, X1, wrap_turns_1), &why);
     for (size_t i = 0; i < NQ; ++i) {
         scale_1[i] = wrap_turns_1[i]*s[i%(1)];
     }
     for (size_t i = 0; i < NQ; ++i) {
         X[i] = X0[i] + scale_1[i];
     }
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

@@ -149,9 +149,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -213,6 +213,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -261,7 +285,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -271,7 +295,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -284,7 +308,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -301,16 +325,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -318,7 +342,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1447,42 +1480,43 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real W_p_xx, R_xx, R_yx, h_star_x, h_star_y;
+    real W_p_xx, R_xx, R_yx, h_star_x, h_star_y, f_p_t, f_p_t_2;
 } values;
 
 INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
 {
     /* (W_p) centripetal tensor of the platform */
     const real omega_z = V[2*w + k];
-    const real W_p_xx = -omega_z*omega_z;
-    v->W_p_xx = W_p_xx;
+    v->W_p_xx = -omega_z*omega_z;
 }
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
     /* X: named entries */
     const real X_2 = X[2*w + k];
-    const real R_xx = cosine(X_2);
-    const real R_yx = sine(X_2);
+    v->R_xx = cosine(X_2);
+    v->R_yx = sine(X_2);
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x - R_yx*m->h_star_in_platform_y;
-    const real h_star_y = R_xx*m->h_star_in_platform_y + R_yx*m->h_star_in_platform_x;
-    v->R_xx = R_xx;
-    v->R_yx = R_yx;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
+    v->h_star_x = v->R_xx*m->h_star_in_platform_x - v->R_yx*m->h_star_in_platform_y;
+    v->h_star_y = v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x;
+}
+
+INLINE void stage_V_X(values *v)
+{
+    /* (f_p) inertia force of the platform less its weight */
+    v->f_p_t = v->W_p_xx*v->h_star_x;
+    v->f_p_t_2 = -v->W_p_xx*v->h_star_y;
 }
 
 typedef struct {
-    real prr_q_x, prr_q_y, prr_S_x, prr_S_y, prr_disc_1, prr_c_2, prr_s_2, prr_v_2_in_axes0_x,
-        prr_v_2_in_axes0_y, axis_y_prr_axes2_x, axis_x_prr_axes2_x, prr_w_1_t, prr_w_1_t_2,
-        prr_w_1_in_axes2_x, prr_w_1_in_axes2_y, prr_w_1_x, prr_w_1_y, prr_a_p_x, prr_a_p_y,
-        prr_S_dot_t, prr_S_dot_t_2, prr_S_dot_x, prr_S_dot_y, prr_qd_2, prr_W_2_t, prr_S_ddot_x,
-        prr_S_ddot_y, prr_S_ddot_in_axes2_y, prr_H_a_1_z, prr_w_2_in_axes2_y,
-        prr_d_Gamma_2_in_axes2_y, prr_d_Gamma_1_in_axes2_y, prr_d_c_in_axes2_xx, prr_d_c_in_axes2_xy,
-        prr_u_1_in_axes2_x, prr_u_1_in_axes2_y, prr_acc_2_o_in_axes2_x, prr_acc_2_o_in_axes2_y,
-        prr_q_1_t, prr_q_1, prr_acc_2_in_axes2_x, prr_acc_2_in_axes2_y, prr_c_in_axes2_x,
-        prr_c_in_axes2_y;
+    real prr_q_x, prr_q_y, prr_S_in_axes0_x, prr_disc_1, prr_q_1_t, prr_c_2, prr_s_2,
+        prr_v_2_in_axes0_x, prr_v_2_in_axes0_y, axis_y_prr_axes2_x, axis_x_prr_axes2_x, prr_w_1_t,
+        prr_w_1_in_axes2_x, prr_w_1_in_axes2_y, prr_w_1_x, prr_w_1_y, prr_g_in_axes2_x,
+        prr_g_in_axes2_y, prr_H_a_1_z, prr_a_p_x, prr_a_p_y, prr_S_dot_t, prr_S_dot_t_2, prr_S_dot_x,
+        prr_S_dot_y, prr_qd_1_t, prr_bias_t, prr_c_t, prr_c_t_2, prr_S_ddot_in_axes2_x,
+        prr_S_ddot_in_axes2_y, prr_qdd_1_t, prr_qdd_1, prr_Q_xx, prr_Q_xy, prr_Q_yy, prr_M_ta_t,
+        prr_M_ta_t_2, prr_M_aa_t, prr_U_x, prr_U_y, prr_Z_a_t, prr_acc_2_in_axes2_x,
+        prr_acc_2_in_axes2_y, prr_c_in_axes2_x, prr_c_in_axes2_y;
 } values_prr;
 
 INLINE void stage_prr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1491,58 +1525,47 @@ INLINE void stage_prr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (prr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real prr_q_x = R_xx*m->prr_platform_point_x[i] - R_yx*m->prr_platform_point_y[i];
-    const real prr_q_y = R_xx*m->prr_platform_point_y[i] + R_yx*m->prr_platform_point_x[i];
+    v->prr_q_x = R_xx*m->prr_platform_point_x[i] - R_yx*m->prr_platform_point_y[i];
+    v->prr_q_y = R_xx*m->prr_platform_point_y[i] + R_yx*m->prr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real prr_S_x = t_x - m->prr_base_point_x[i] + prr_q_x;
+    const real prr_S_x = t_x - m->prr_base_point_x[i] + v->prr_q_x;
     const real t_y = X[1*w + j];
-    const real prr_S_y = t_y - m->prr_base_point_y[i] + prr_q_y;
-    const real prr_S_in_axes0_x = prr_S_x*m->prr_base_frame_xx[i] +
-        prr_S_y*m->prr_base_frame_yx[i];
+    const real prr_S_y = t_y - m->prr_base_point_y[i] + v->prr_q_y;
+    v->prr_S_in_axes0_x = prr_S_x*m->prr_base_frame_xx[i] + prr_S_y*m->prr_base_frame_yx[i];
     /* (prr-disc_1) discriminant of the distance equation */
     const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-    const real prr_disc_1 = m->prr_size_t[i] + prr_S_in_axes0_x*prr_S_in_axes0_x -
-        prr_disc_1_t;
+    v->prr_disc_1 = m->prr_size_t[i] + v->prr_S_in_axes0_x*v->prr_S_in_axes0_x - prr_disc_1_t;
+    /* (prr-q_1) displacement of joint 1 */
+    v->prr_q_1_t = -m->prr_branch_1[i]*root(v->prr_disc_1);
     /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real prr_c_2 =
-        -m->inv_prr_size_t[i]*m->prr_branch_1[i]*root(prr_disc_1)*m->prr_platform_joint_offset_x[i];
+    v->prr_c_2 = m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*v->prr_q_1_t;
     /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real prr_s_2 =
+    v->prr_s_2 =
         m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*(prr_S_x*m->prr_base_frame_xy[i]
         + prr_S_y*m->prr_base_frame_yy[i]);
     /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-    const real prr_v_2_in_axes0_x = -m->prr_platform_joint_offset_x[i]*prr_s_2;
-    const real prr_v_2_in_axes0_y = prr_c_2*m->prr_platform_joint_offset_x[i];
+    v->prr_v_2_in_axes0_x = -m->prr_platform_joint_offset_x[i]*v->prr_s_2;
+    v->prr_v_2_in_axes0_y = v->prr_c_2*m->prr_platform_joint_offset_x[i];
     /* (prr-w_1) reciprocal vector 1 */
-    const real axis_y_prr_axes2_x = m->prr_base_frame_xy[i]*prr_c_2 -
-        m->prr_base_frame_xx[i]*prr_s_2;
-    const real axis_x_prr_axes2_x = m->prr_base_frame_yy[i]*prr_c_2 -
-        m->prr_base_frame_yx[i]*prr_s_2;
-    const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
-    const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
-    const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
-    const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2;
-    const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
-        axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
-    const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
-        axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
-    v->prr_q_x = prr_q_x;
-    v->prr_q_y = prr_q_y;
-    v->prr_S_x = prr_S_x;
-    v->prr_S_y = prr_S_y;
-    v->prr_disc_1 = prr_disc_1;
-    v->prr_c_2 = prr_c_2;
-    v->prr_s_2 = prr_s_2;
-    v->prr_v_2_in_axes0_x = prr_v_2_in_axes0_x;
-    v->prr_v_2_in_axes0_y = prr_v_2_in_axes0_y;
-    v->axis_y_prr_axes2_x = axis_y_prr_axes2_x;
-    v->axis_x_prr_axes2_x = axis_x_prr_axes2_x;
-    v->prr_w_1_t = prr_w_1_t;
-    v->prr_w_1_t_2 = prr_w_1_t_2;
-    v->prr_w_1_in_axes2_x = prr_w_1_in_axes2_x;
-    v->prr_w_1_in_axes2_y = prr_w_1_in_axes2_y;
-    v->prr_w_1_x = prr_w_1_x;
-    v->prr_w_1_y = prr_w_1_y;
+    v->axis_y_prr_axes2_x = m->prr_base_frame_xy[i]*v->prr_c_2 -
+        m->prr_base_frame_xx[i]*v->prr_s_2;
+    v->axis_x_prr_axes2_x = m->prr_base_frame_yy[i]*v->prr_c_2 -
+        m->prr_base_frame_yx[i]*v->prr_s_2;
+    v->prr_w_1_t = -1/v->prr_v_2_in_axes0_y;
+    const real prr_w_1_t_2 = v->prr_v_2_in_axes0_x*v->prr_w_1_t;
+    v->prr_w_1_in_axes2_x = v->prr_c_2 + v->prr_s_2*prr_w_1_t_2;
+    v->prr_w_1_in_axes2_y = v->prr_c_2*prr_w_1_t_2 - v->prr_s_2;
+    v->prr_w_1_x = v->axis_x_prr_axes2_x*v->prr_w_1_in_axes2_x +
+        v->axis_y_prr_axes2_x*v->prr_w_1_in_axes2_y;
+    v->prr_w_1_y = v->axis_x_prr_axes2_x*v->prr_w_1_in_axes2_y -
+        v->axis_y_prr_axes2_x*v->prr_w_1_in_axes2_x;
+    /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->prr_g_in_axes2_x = m->prr_g_in_axes0_y[i]*v->prr_s_2 +
+        v->prr_c_2*m->prr_g_in_axes0_x[i];
+    v->prr_g_in_axes2_y = v->prr_c_2*m->prr_g_in_axes0_y[i] -
+        m->prr_g_in_axes0_x[i]*v->prr_s_2;
+    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+    v->prr_H_a_1_z = v->prr_q_x*v->prr_w_1_y - v->prr_q_y*v->prr_w_1_x;
 }
 
 INLINE void stage_prr_A_X(size_t w, size_t j, const real *A, values_prr *v)
@@ -1550,11 +1573,9 @@ INLINE void stage_prr_A_X(size_t w, size_t j, const real *A, values_prr *v)
     /* (prr-a_p) acceleration of the connection point without its centripetal part */
     const real alpha_z = A[2*w + j];
     const real t_ddot_x = A[0*w + j];
-    const real prr_a_p_x = t_ddot_x - alpha_z*v->prr_q_y;
+    v->prr_a_p_x = t_ddot_x - alpha_z*v->prr_q_y;
     const real t_ddot_y = A[1*w + j];
-    const real prr_a_p_y = t_ddot_y + alpha_z*v->prr_q_x;
-    v->prr_a_p_x = prr_a_p_x;
-    v->prr_a_p_y = prr_a_p_y;
+    v->prr_a_p_y = t_ddot_y + alpha_z*v->prr_q_x;
 }
 
 INLINE void stage_prr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1562,23 +1583,23 @@ INLINE void stage_prr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
 {
     /* (prr-S_dot) velocity of the connection point */
     const real omega_z = V[2*w + j];
-    const real prr_S_dot_t = omega_z*v->prr_q_y;
-    const real prr_S_dot_t_2 = omega_z*v->prr_q_x;
+    v->prr_S_dot_t = omega_z*v->prr_q_y;
+    v->prr_S_dot_t_2 = omega_z*v->prr_q_x;
     const real t_dot_x = V[0*w + j];
-    const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
+    v->prr_S_dot_x = t_dot_x - v->prr_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real prr_S_dot_y = t_dot_y + prr_S_dot_t_2;
-    /* (prr-qd_2) rate of joint 2 */
-    const real prr_qd_2 = -v->prr_w_1_t*(prr_S_dot_x*m->prr_base_frame_xy[i] +
-        prr_S_dot_y*m->prr_base_frame_yy[i]);
+    v->prr_S_dot_y = t_dot_y + v->prr_S_dot_t_2;
+    /* (prr-qd_1) rate of joint 1 */
+    v->prr_qd_1_t = -v->prr_w_1_t*(v->prr_S_dot_x*m->prr_base_frame_xy[i] +
+        v->prr_S_dot_y*m->prr_base_frame_yy[i]);
     /* (prr-W_2) centripetal tensor of link 2 */
-    const real prr_W_2_t = prr_qd_2*prr_qd_2;
-    v->prr_S_dot_t = prr_S_dot_t;
-    v->prr_S_dot_t_2 = prr_S_dot_t_2;
-    v->prr_S_dot_x = prr_S_dot_x;
-    v->prr_S_dot_y = prr_S_dot_y;
-    v->prr_qd_2 = prr_qd_2;
-    v->prr_W_2_t = prr_W_2_t;
+    const real prr_W_2_t = v->prr_qd_1_t*v->prr_qd_1_t;
+    /* (prr-bias) acceleration of the connection point at zero joint accelerations */
+    v->prr_bias_t = m->prr_platform_joint_offset_x[i]*v->prr_qd_1_t*v->prr_qd_1_t;
+    /* (prr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->prr_c_t = prr_W_2_t*m->prr_h_2_in_spec2_x[i];
+    v->prr_c_t_2 = prr_W_2_t*m->prr_h_2_in_spec2_y[i];
 }
 
 INLINE void stage_prr_A_V_X(size_t w, size_t j, const real *V, values_prr *v)
@@ -1587,28 +1608,17 @@ INLINE void stage_prr_A_V_X(size_t w, size_t j, const real *V, values_prr *v)
     const real omega_z = V[2*w + j];
     const real prr_S_ddot_x = v->prr_a_p_x - omega_z*v->prr_S_dot_t_2;
     const real prr_S_ddot_y = v->prr_a_p_y - omega_z*v->prr_S_dot_t;
-    const real prr_S_ddot_in_axes2_y = v->axis_x_prr_axes2_x*prr_S_ddot_y +
+    v->prr_S_ddot_in_axes2_x = v->axis_x_prr_axes2_x*prr_S_ddot_x -
+        v->axis_y_prr_axes2_x*prr_S_ddot_y;
+    v->prr_S_ddot_in_axes2_y = v->axis_x_prr_axes2_x*prr_S_ddot_y +
         v->axis_y_prr_axes2_x*prr_S_ddot_x;
-    v->prr_S_ddot_x = prr_S_ddot_x;
-    v->prr_S_ddot_y = prr_S_ddot_y;
-    v->prr_S_ddot_in_axes2_y = prr_S_ddot_in_axes2_y;
-}
-
-INLINE void stage_prr_H_condition(const prepared *m, size_t i, values_prr *v)
-{
-    /* (prr-w_1) reciprocal vector 1 */
-    const real prr_w_1_t = m->prr_platform_joint_offset_x[i]*v->prr_s_2/v->prr_v_2_in_axes0_y;
-    const real prr_w_1_in_axes2_x = v->prr_c_2 + v->prr_s_2*prr_w_1_t;
-    const real prr_w_1_in_axes2_y = v->prr_c_2*prr_w_1_t - v->prr_s_2;
-    const real prr_w_1_x = v->axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
-        v->axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
-    const real prr_w_1_y = v->axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
-        v->axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    const real prr_H_a_1_z = v->prr_q_x*prr_w_1_y - v->prr_q_y*prr_w_1_x;
-    v->prr_w_1_x = prr_w_1_x;
-    v->prr_w_1_y = prr_w_1_y;
-    v->prr_H_a_1_z = prr_H_a_1_z;
+    /* (prr-rel) acceleration of the connection point left to the joint accelerations */
+    const real prr_rel_in_axes2_x = v->prr_S_ddot_in_axes2_x + v->prr_bias_t;
+    /* (prr-qdd_1) acceleration of joint 1 */
+    v->prr_qdd_1_t = v->prr_w_1_t*(v->prr_S_ddot_in_axes2_y*v->prr_c_2 +
+        prr_rel_in_axes2_x*v->prr_s_2);
+    v->prr_qdd_1 = v->prr_c_2*prr_rel_in_axes2_x - v->prr_S_ddot_in_axes2_y*v->prr_s_2 +
+        v->prr_qdd_1_t*v->prr_v_2_in_axes0_x;
 }
 
 INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
@@ -1635,110 +1645,106 @@ INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
         v->prr_w_1_in_axes2_x*(v->prr_c_2*m->prr_link1_mass[i] + prr_d_Gamma_1_t*v->prr_s_2);
     const real prr_d_c_in_axes2_xy = m->prr_h_2_in_spec2_y[i]*prr_w_2_in_axes2_y +
         prr_d_Gamma_2_in_axes2_y*prr_w_2_t - prr_d_Gamma_1_in_axes2_y*v->prr_w_1_in_axes2_x;
-    v->prr_w_2_in_axes2_y = prr_w_2_in_axes2_y;
-    v->prr_d_Gamma_2_in_axes2_y = prr_d_Gamma_2_in_axes2_y;
-    v->prr_d_Gamma_1_in_axes2_y = prr_d_Gamma_1_in_axes2_y;
-    v->prr_d_c_in_axes2_xx = prr_d_c_in_axes2_xx;
-    v->prr_d_c_in_axes2_xy = prr_d_c_in_axes2_xy;
+    /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real prr_Q_t = m->prr_h_2_in_spec2_x[i]*prr_w_2_in_axes2_y +
+        prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y +
+        prr_d_Gamma_1_in_axes2_y*v->prr_w_1_in_axes2_y + prr_d_c_in_axes2_xx;
+    const real prr_Q_t_2 = R(0.5)*prr_Q_t;
+    const real prr_Q_t_3 = v->axis_y_prr_axes2_x*prr_Q_t_2 -
+        v->axis_x_prr_axes2_x*prr_d_c_in_axes2_xy;
+    const real prr_Q_t_4 = v->axis_y_prr_axes2_x*prr_d_c_in_axes2_xy +
+        v->axis_x_prr_axes2_x*prr_Q_t_2;
+    v->prr_Q_xx = 2*v->axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx;
+    v->prr_Q_xy = v->axis_x_prr_axes2_x*prr_Q_t_3 + v->axis_y_prr_axes2_x*prr_Q_t_4;
+    v->prr_Q_yy = 2*v->axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx;
+    /* (M_ta) coupling block of M */
+    v->prr_M_ta_t = v->prr_Q_xy*v->prr_q_x - v->prr_Q_xx*v->prr_q_y;
+    v->prr_M_ta_t_2 = v->prr_Q_yy*v->prr_q_x - v->prr_Q_xy*v->prr_q_y;
+    /* (M_aa) rotational block of M */
+    v->prr_M_aa_t = v->prr_M_ta_t_2*v->prr_q_x - v->prr_M_ta_t*v->prr_q_y;
 }
 
-INLINE void stage_prr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+INLINE void stage_prr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *s,
     values_prr *v)
 {
     /* (prr-u_1) centripetal acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real prr_u_1_x = -omega_z*v->prr_S_dot_t_2;
-    const real prr_u_1_t = omega_z*v->prr_S_dot_t;
-    const real prr_u_1_in_axes2_x = v->axis_x_prr_axes2_x*prr_u_1_x +
-        v->axis_y_prr_axes2_x*prr_u_1_t;
-    const real prr_u_1_in_axes2_y = v->axis_y_prr_axes2_x*prr_u_1_x -
-        v->axis_x_prr_axes2_x*prr_u_1_t;
+    const real W_p_xx = s[2*w + j];
+    const real prr_u_1_x = W_p_xx*v->prr_q_x;
+    const real prr_u_1_y = W_p_xx*v->prr_q_y;
+    const real prr_u_1_in_axes2_x = v->axis_x_prr_axes2_x*prr_u_1_x -
+        v->axis_y_prr_axes2_x*prr_u_1_y;
+    const real prr_u_1_in_axes2_y = v->axis_x_prr_axes2_x*prr_u_1_y +
+        v->axis_y_prr_axes2_x*prr_u_1_x;
+    /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x + v->prr_bias_t;
+    /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real prr_B_2_o_in_axes2_xy = v->prr_w_1_t*(v->prr_c_2*prr_u_1_in_axes2_y +
+        prr_rel_o_in_axes2_x*v->prr_s_2);
+    /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
+    const real prr_acc_1_o_in_axes0_x = v->prr_c_2*prr_rel_o_in_axes2_x -
+        m->prr_g_in_axes0_x[i] - v->prr_s_2*prr_u_1_in_axes2_y +
+        prr_B_2_o_in_axes2_xy*v->prr_v_2_in_axes0_x;
+    /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
+    const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
     /* (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - m->prr_g_in_axes0_y[i]*v->prr_s_2
-        - v->prr_c_2*m->prr_g_in_axes0_x[i];
-    const real prr_acc_2_o_in_axes2_y = m->prr_g_in_axes0_x[i]*v->prr_s_2 -
-        v->prr_c_2*m->prr_g_in_axes0_y[i] + prr_u_1_in_axes2_y;
-    v->prr_u_1_in_axes2_x = prr_u_1_in_axes2_x;
-    v->prr_u_1_in_axes2_y = prr_u_1_in_axes2_y;
-    v->prr_acc_2_o_in_axes2_x = prr_acc_2_o_in_axes2_x;
-    v->prr_acc_2_o_in_axes2_y = prr_acc_2_o_in_axes2_y;
-}
-
-INLINE void stage_prr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_prr *v)
-{
-    /* (prr-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_yx = s[1*w + j];
-    const real t_x = X[0*w + j];
-    const real prr_S_x = t_x - m->prr_base_point_x[i] + R_xx*m->prr_platform_point_x[i] -
-        R_yx*m->prr_platform_point_y[i];
-    const real t_y = X[1*w + j];
-    const real prr_S_y = t_y - m->prr_base_point_y[i] + R_xx*m->prr_platform_point_y[i] +
-        R_yx*m->prr_platform_point_x[i];
-    const real prr_S_in_axes0_x = prr_S_x*m->prr_base_frame_xx[i] +
-        prr_S_y*m->prr_base_frame_yx[i];
-    /* (prr-disc_1) discriminant of the distance equation */
-    const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-    const real prr_disc_1 = m->prr_size_t[i] + prr_S_in_axes0_x*prr_S_in_axes0_x -
-        prr_disc_1_t;
-    /* (prr-q_1) displacement of joint 1 */
-    const real prr_q_1_t = -m->prr_branch_1[i]*root(prr_disc_1);
-    const real prr_q_1 = prr_S_in_axes0_x - prr_q_1_t;
-    v->prr_S_x = prr_S_x;
-    v->prr_S_y = prr_S_y;
-    v->prr_disc_1 = prr_disc_1;
-    v->prr_q_1_t = prr_q_1_t;
-    v->prr_q_1 = prr_q_1;
+    const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - v->prr_g_in_axes2_x;
+    const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y - v->prr_g_in_axes2_y;
+    /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real prr_mu_2_o_in_axes2_z = prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
+        prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
+        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
+    /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real prr_c_o_t = v->prr_w_1_t*(prr_mu_2_o_in_axes2_z -
+        prr_f_1_o_in_axes0_x*v->prr_v_2_in_axes0_x);
+    const real prr_c_o_in_axes2_x = v->prr_c_t -
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v->prr_c_2*prr_f_1_o_in_axes0_x +
+        prr_c_o_t*v->prr_s_2;
+    const real prr_c_o_in_axes2_y = v->prr_c_t_2 +
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v->prr_s_2 +
+        v->prr_c_2*prr_c_o_t;
+    /* (prr-U) velocity and gravity terms of the leg force */
+    v->prr_U_x = -v->axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
+        v->axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
+    v->prr_U_y = v->axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
+        v->axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
+    /* (Z_a) rotational part of Z */
+    v->prr_Z_a_t = v->prr_U_y*v->prr_q_x - v->prr_U_x*v->prr_q_y;
 }
 
 INLINE void stage_prr_legs_required(const prepared *m, size_t i, values_prr *v)
 {
-    /* (prr-S_ddot) acceleration of the connection point */
-    const real prr_S_ddot_in_axes2_x = v->axis_x_prr_axes2_x*v->prr_S_ddot_x -
-        v->axis_y_prr_axes2_x*v->prr_S_ddot_y;
-    /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-    const real prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x +
-        m->prr_platform_joint_offset_x[i]*v->prr_qd_2*v->prr_qd_2;
-    /* (prr-B_2) acceleration tensor of link 2 */
-    const real prr_B_2_in_axes2_xy = v->prr_w_1_t*(v->prr_S_ddot_in_axes2_y*v->prr_c_2 +
-        prr_rel_in_axes2_x*v->prr_s_2);
     /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_in_axes0_x = v->prr_c_2*prr_rel_in_axes2_x - m->prr_g_in_axes0_x[i] -
-        v->prr_S_ddot_in_axes2_y*v->prr_s_2 + prr_B_2_in_axes2_xy*v->prr_v_2_in_axes0_x;
+    const real prr_acc_1_in_axes0_x = v->prr_qdd_1 - m->prr_g_in_axes0_x[i];
     /* (prr-f_1) inertia force of link 1 less its weight */
     const real prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*m->prr_link1_mass[i];
     /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x -
-        m->prr_g_in_axes0_y[i]*v->prr_s_2 - v->prr_c_2*m->prr_g_in_axes0_x[i];
-    const real prr_acc_2_in_axes2_y = m->prr_g_in_axes0_x[i]*v->prr_s_2 -
-        v->prr_c_2*m->prr_g_in_axes0_y[i] + v->prr_S_ddot_in_axes2_y;
+    v->prr_acc_2_in_axes2_x = v->prr_S_ddot_in_axes2_x - v->prr_g_in_axes2_x;
+    v->prr_acc_2_in_axes2_y = v->prr_S_ddot_in_axes2_y - v->prr_g_in_axes2_y;
     /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real prr_mu_2_in_axes2_z = prr_acc_2_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        prr_acc_2_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
-        prr_B_2_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
+    const real prr_mu_2_in_axes2_z = v->prr_acc_2_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
+        v->prr_acc_2_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
+        m->prr_J_2_in_spec2_zz[i]*v->prr_qdd_1_t;
     /* (prr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real prr_c_t = v->prr_w_1_t*(prr_mu_2_in_axes2_z -
+    const real prr_c_t_3 = v->prr_w_1_t*(prr_mu_2_in_axes2_z -
         prr_f_1_in_axes0_x*v->prr_v_2_in_axes0_x);
-    const real prr_c_in_axes2_x = v->prr_W_2_t*m->prr_h_2_in_spec2_x[i] -
-        prr_B_2_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v->prr_c_2*prr_f_1_in_axes0_x +
-        prr_c_t*v->prr_s_2;
-    const real prr_c_in_axes2_y = v->prr_W_2_t*m->prr_h_2_in_spec2_y[i] +
-        prr_B_2_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_in_axes0_x*v->prr_s_2 +
-        v->prr_c_2*prr_c_t;
-    v->prr_acc_2_in_axes2_x = prr_acc_2_in_axes2_x;
-    v->prr_acc_2_in_axes2_y = prr_acc_2_in_axes2_y;
-    v->prr_c_in_axes2_x = prr_c_in_axes2_x;
-    v->prr_c_in_axes2_y = prr_c_in_axes2_y;
+    v->prr_c_in_axes2_x = v->prr_c_t - m->prr_h_2_in_spec2_y[i]*v->prr_qdd_1_t -
+        v->prr_c_2*prr_f_1_in_axes0_x + prr_c_t_3*v->prr_s_2;
+    v->prr_c_in_axes2_y = v->prr_c_t_2 + m->prr_h_2_in_spec2_x[i]*v->prr_qdd_1_t +
+        prr_f_1_in_axes0_x*v->prr_s_2 + v->prr_c_2*prr_c_t_3;
 }
 
 typedef struct {
-    real rpr_q_x, rpr_q_y, rpr_S_in_turn1_x, rpr_S_in_turn1_y, rpr_q_2_t, rpr_q_2, inv_rpr_q_2,
-        axis_x_rpr_axes1_x, axis_x_rpr_axes1_y, rpr_w_1_in_axes1_y, rpr_w_2_x, rpr_w_2_y, rpr_a_p_x,
-        rpr_a_p_y, rpr_S_dot_t, rpr_S_dot_t_2, rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_in_axes1_xx,
-        rpr_S_ddot_x, rpr_S_ddot_y, rpr_U_x, rpr_U_y, rpr_Z_a_t, rpr_qdd_1, rpr_acc_2_in_axes1_x,
-        rpr_acc_2_in_axes1_y, rpr_c_in_axes1_y;
+    real rpr_q_x, rpr_q_y, rpr_q_2_t, rpr_q_2, inv_rpr_q_2, axis_x_rpr_axes1_x, axis_x_rpr_axes1_y,
+        rpr_H_a_2_z, rpr_c_1, rpr_s_1, rpr_g_in_axes1_x, rpr_g_in_axes1_y, rpr_a_p_x, rpr_a_p_y,
+        rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_in_axes1_xx, rpr_u_1_t, rpr_u_1_y,
+        rpr_bias_in_axes1_y, rpr_phi_2_t, rpr_c_t, rpr_S_ddot_in_axes1_x, rpr_S_ddot_in_axes1_y,
+        rpr_qdd_1, rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_U_x,
+        rpr_U_y, rpr_Z_a_t, rpr_acc_2_in_axes1_x, rpr_acc_2_in_axes1_y, rpr_phi_2_in_axes1_x,
+        rpr_c_in_axes1_y;
 } values_rpr;
 
 INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1747,41 +1753,33 @@ INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rpr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rpr_q_x = R_xx*m->rpr_platform_point_x[i] - R_yx*m->rpr_platform_point_y[i];
-    const real rpr_q_y = R_xx*m->rpr_platform_point_y[i] + R_yx*m->rpr_platform_point_x[i];
+    v->rpr_q_x = R_xx*m->rpr_platform_point_x[i] - R_yx*m->rpr_platform_point_y[i];
+    v->rpr_q_y = R_xx*m->rpr_platform_point_y[i] + R_yx*m->rpr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rpr_S_x = t_x - m->rpr_base_point_x[i] + rpr_q_x;
+    const real rpr_S_x = t_x - m->rpr_base_point_x[i] + v->rpr_q_x;
     const real t_y = X[1*w + j];
-    const real rpr_S_y = t_y - m->rpr_base_point_y[i] + rpr_q_y;
+    const real rpr_S_y = t_y - m->rpr_base_point_y[i] + v->rpr_q_y;
     const real rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] +
         rpr_S_y*m->rpr_base_frame_yx[i];
     const real rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] +
         rpr_S_y*m->rpr_base_frame_yy[i];
     /* (rpr-q_2) displacement of joint 2 */
-    const real rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x +
-        rpr_S_in_turn1_y*rpr_S_in_turn1_y;
-    const real rpr_q_2 = m->rpr_branch_1[i]*root(rpr_q_2_t);
+    v->rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y;
+    v->rpr_q_2 = m->rpr_branch_1[i]*root(v->rpr_q_2_t);
+    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    v->inv_rpr_q_2 = 1/v->rpr_q_2;
     /* (rpr-S_dot) velocity of the connection point */
-    const real inv_rpr_q_2 = 1/rpr_q_2;
-    const real axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x;
-    const real axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y;
-    /* (rpr-w_1) reciprocal vector 1 */
-    const real rpr_w_1_in_axes1_y = 1/rpr_q_2;
-    /* (rpr-w_2) reciprocal vector 2 */
-    const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
-    const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
-    v->rpr_q_x = rpr_q_x;
-    v->rpr_q_y = rpr_q_y;
-    v->rpr_S_in_turn1_x = rpr_S_in_turn1_x;
-    v->rpr_S_in_turn1_y = rpr_S_in_turn1_y;
-    v->rpr_q_2_t = rpr_q_2_t;
-    v->rpr_q_2 = rpr_q_2;
-    v->inv_rpr_q_2 = inv_rpr_q_2;
-    v->axis_x_rpr_axes1_x = axis_x_rpr_axes1_x;
-    v->axis_x_rpr_axes1_y = axis_x_rpr_axes1_y;
-    v->rpr_w_1_in_axes1_y = rpr_w_1_in_axes1_y;
-    v->rpr_w_2_x = rpr_w_2_x;
-    v->rpr_w_2_y = rpr_w_2_y;
+    v->axis_x_rpr_axes1_x = v->inv_rpr_q_2*rpr_S_x;
+    v->axis_x_rpr_axes1_y = v->inv_rpr_q_2*rpr_S_y;
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    v->rpr_H_a_2_z = v->axis_x_rpr_axes1_y*v->rpr_q_x - v->axis_x_rpr_axes1_x*v->rpr_q_y;
+    /* (rpr-c_1) */
+    v->rpr_c_1 = v->inv_rpr_q_2*rpr_S_in_turn1_x;
+    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+    v->rpr_s_1 = v->inv_rpr_q_2*rpr_S_in_turn1_y;
+    /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->rpr_g_in_axes1_x = m->rpr_acc_2_t[i]*v->rpr_c_1 + m->rpr_acc_2_t_2[i]*v->rpr_s_1;
+    v->rpr_g_in_axes1_y = m->rpr_acc_2_t_2[i]*v->rpr_c_1 - m->rpr_acc_2_t[i]*v->rpr_s_1;
 }
 
 INLINE void stage_rpr_A_X(size_t w, size_t j, const real *A, values_rpr *v)
@@ -1789,14 +1787,13 @@ INLINE void stage_rpr_A_X(size_t w, size_t j, const real *A, values_rpr *v)
     /* (rpr-a_p) acceleration of the connection point without its centripetal part */
     const real alpha_z = A[2*w + j];
     const real t_ddot_x = A[0*w + j];
-    const real rpr_a_p_x = t_ddot_x - alpha_z*v->rpr_q_y;
+    v->rpr_a_p_x = t_ddot_x - alpha_z*v->rpr_q_y;
     const real t_ddot_y = A[1*w + j];
-    const real rpr_a_p_y = t_ddot_y + alpha_z*v->rpr_q_x;
-    v->rpr_a_p_x = rpr_a_p_x;
-    v->rpr_a_p_y = rpr_a_p_y;
+    v->rpr_a_p_y = t_ddot_y + alpha_z*v->rpr_q_x;
 }
 
-INLINE void stage_rpr_V_X(size_t w, size_t j, const real *V, values_rpr *v)
+INLINE void stage_rpr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rpr *v)
 {
     /* (rpr-S_dot) velocity of the connection point */
     const real omega_z = V[2*w + j];
@@ -1806,155 +1803,133 @@ INLINE void stage_rpr_V_X(size_t w, size_t j, const real *V, values_rpr *v)
     const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
     const real t_dot_y = V[1*w + j];
     const real rpr_S_dot_y = t_dot_y + rpr_S_dot_t_2;
-    const real rpr_S_dot_in_axes1_x = v->axis_x_rpr_axes1_x*rpr_S_dot_x +
+    v->rpr_S_dot_in_axes1_x = v->axis_x_rpr_axes1_x*rpr_S_dot_x +
         v->axis_x_rpr_axes1_y*rpr_S_dot_y;
     /* (rpr-qd_1) rate of joint 1 */
-    const real rpr_qd_1 = v->inv_rpr_q_2*(v->axis_x_rpr_axes1_x*rpr_S_dot_y -
+    v->rpr_qd_1 = v->inv_rpr_q_2*(v->axis_x_rpr_axes1_x*rpr_S_dot_y -
         v->axis_x_rpr_axes1_y*rpr_S_dot_x);
     /* (rpr-W_1) centripetal tensor of link 1 */
-    const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
-    v->rpr_S_dot_t = rpr_S_dot_t;
-    v->rpr_S_dot_t_2 = rpr_S_dot_t_2;
-    v->rpr_S_dot_in_axes1_x = rpr_S_dot_in_axes1_x;
-    v->rpr_qd_1 = rpr_qd_1;
-    v->rpr_W_1_in_axes1_xx = rpr_W_1_in_axes1_xx;
+    v->rpr_W_1_in_axes1_xx = -v->rpr_qd_1*v->rpr_qd_1;
+    /* (rpr-u_1) centripetal acceleration of the connection point */
+    v->rpr_u_1_t = omega_z*rpr_S_dot_t_2;
+    v->rpr_u_1_y = -omega_z*rpr_S_dot_t;
+    /* (rpr-bias) acceleration of the connection point at zero joint accelerations */
+    v->rpr_bias_in_axes1_y = 2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
+    /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
+    v->rpr_phi_2_t = v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i];
+    /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->rpr_c_t = -v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i];
 }
 
-INLINE void stage_rpr_A_V_X(size_t w, size_t j, const real *V, values_rpr *v)
+INLINE void stage_rpr_A_V_X(values_rpr *v)
 {
     /* (rpr-S_ddot) acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real rpr_S_ddot_x = v->rpr_a_p_x - omega_z*v->rpr_S_dot_t_2;
-    const real rpr_S_ddot_y = v->rpr_a_p_y - omega_z*v->rpr_S_dot_t;
-    v->rpr_S_ddot_x = rpr_S_ddot_x;
-    v->rpr_S_ddot_y = rpr_S_ddot_y;
+    const real rpr_S_ddot_x = v->rpr_a_p_x - v->rpr_u_1_t;
+    const real rpr_S_ddot_y = v->rpr_a_p_y + v->rpr_u_1_y;
+    v->rpr_S_ddot_in_axes1_x = v->axis_x_rpr_axes1_x*rpr_S_ddot_x +
+        v->axis_x_rpr_axes1_y*rpr_S_ddot_y;
+    v->rpr_S_ddot_in_axes1_y = v->axis_x_rpr_axes1_x*rpr_S_ddot_y -
+        v->axis_x_rpr_axes1_y*rpr_S_ddot_x;
+    /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rpr_rel_in_axes1_y = v->rpr_S_ddot_in_axes1_y - v->rpr_bias_in_axes1_y;
+    /* (rpr-qdd_1) acceleration of joint 1 */
+    v->rpr_qdd_1 = v->inv_rpr_q_2*rpr_rel_in_axes1_y;
 }
 
-INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_rpr *v)
+INLINE void stage_rpr_M_dynamics(const prepared *m, size_t i, values_rpr *v)
+{
+    /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rpr_d_c_in_axes1_xy = v->inv_rpr_q_2*m->rpr_h_2_in_spec1_y[i];
+    const real rpr_d_c_in_axes1_yy = -v->inv_rpr_q_2*m->rpr_h_2_in_spec1_x[i] -
+        v->inv_rpr_q_2*(m->rpr_h_2_in_spec1_x[i] +
+        v->inv_rpr_q_2*m->rpr_J_group_1_in_axes1_zz[i]);
+    /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
+    const real rpr_Q_t_2 = v->axis_x_rpr_axes1_y*rpr_Q_t -
+        v->axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
+    const real rpr_Q_t_3 = v->axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy +
+        v->axis_x_rpr_axes1_x*rpr_Q_t;
+    v->rpr_Q_xx = -2*v->axis_x_rpr_axes1_y*rpr_Q_t_2;
+    v->rpr_Q_xy = v->axis_x_rpr_axes1_x*rpr_Q_t_2 + v->axis_x_rpr_axes1_y*rpr_Q_t_3;
+    v->rpr_Q_yy = -2*v->axis_x_rpr_axes1_x*rpr_Q_t_3;
+    /* (M_ta) coupling block of M */
+    v->rpr_M_ta_t = v->rpr_Q_xy*v->rpr_q_x - v->rpr_Q_xx*v->rpr_q_y;
+    v->rpr_M_ta_t_2 = v->rpr_Q_yy*v->rpr_q_x - v->rpr_Q_xy*v->rpr_q_y;
+    /* (M_aa) rotational block of M */
+    v->rpr_M_aa_t = v->rpr_M_ta_t_2*v->rpr_q_x - v->rpr_M_ta_t*v->rpr_q_y;
+}
+
+INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
 {
     /* (rpr-u_1) centripetal acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real rpr_u_1_t = omega_z*v->rpr_S_dot_t_2;
-    const real rpr_u_1_y = -omega_z*v->rpr_S_dot_t;
-    const real rpr_u_1_in_axes1_y = v->axis_x_rpr_axes1_x*rpr_u_1_y +
-        v->axis_x_rpr_axes1_y*rpr_u_1_t;
+    const real rpr_u_1_in_axes1_y = v->axis_x_rpr_axes1_x*v->rpr_u_1_y +
+        v->axis_x_rpr_axes1_y*v->rpr_u_1_t;
     /* (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
-    const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y -
-        2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
+    const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - v->rpr_bias_in_axes1_y;
     /* (rpr-qdd_1_o) remainder of: acceleration of joint 1 */
     const real rpr_qdd_1_o = v->inv_rpr_q_2*rpr_rel_o_in_axes1_y;
     /* (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rpr_g_in_axes1_x = v->axis_x_rpr_axes1_x*m->gravity_x +
+    const real rpr_g_in_axes1_x_2 = v->axis_x_rpr_axes1_x*m->gravity_x +
         v->axis_x_rpr_axes1_y*m->gravity_y;
-    const real rpr_g_in_axes1_y = v->axis_x_rpr_axes1_x*m->gravity_y -
+    const real rpr_g_in_axes1_y_2 = v->axis_x_rpr_axes1_x*m->gravity_y -
         v->axis_x_rpr_axes1_y*m->gravity_x;
-    const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*rpr_u_1_y -
-        v->axis_x_rpr_axes1_x*rpr_u_1_t - rpr_g_in_axes1_x;
-    const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
+    const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*v->rpr_u_1_y -
+        v->axis_x_rpr_axes1_x*v->rpr_u_1_t - rpr_g_in_axes1_x_2;
+    const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y_2;
     /* (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
        */
-    const real rpr_phi_2_o_in_axes1_x = v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i] -
-        m->rpr_h_2_in_spec1_y[i]*rpr_qdd_1_o;
+    const real rpr_phi_2_o_in_axes1_x = v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*rpr_qdd_1_o;
     /* (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rpr_mu_1_o_in_axes1_z = rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
-        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
+    const real rpr_mu_1_o_in_axes1_z = rpr_g_in_axes1_x_2*m->rpr_h_1_in_spec1_y[i] -
+        rpr_g_in_axes1_y_2*m->rpr_h_1_in_spec1_x[i] +
         rpr_acc_2_o_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
         rpr_acc_2_o_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
         m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1_o;
     /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real rpr_c_o_in_axes1_y = -v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] -
-        m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1_o - v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
+    const real rpr_c_o_in_axes1_y = v->rpr_c_t - m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1_o -
+        v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
     /* (rpr-U) velocity and gravity terms of the leg force */
-    const real rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
+    v->rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
         v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
-    const real rpr_U_y = v->axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
+    v->rpr_U_y = v->axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
         v->axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
     /* (Z_a) rotational part of Z */
-    const real rpr_Z_a_t = rpr_U_y*v->rpr_q_x - rpr_U_x*v->rpr_q_y;
-    v->rpr_U_x = rpr_U_x;
-    v->rpr_U_y = rpr_U_y;
-    v->rpr_Z_a_t = rpr_Z_a_t;
-}
-
-INLINE void stage_rpr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_rpr *v)
-{
-    /* (rpr-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_yx = s[1*w + j];
-    const real t_x = X[0*w + j];
-    const real rpr_S_x = t_x - m->rpr_base_point_x[i] + R_xx*m->rpr_platform_point_x[i] -
-        R_yx*m->rpr_platform_point_y[i];
-    const real t_y = X[1*w + j];
-    const real rpr_S_y = t_y - m->rpr_base_point_y[i] + R_xx*m->rpr_platform_point_y[i] +
-        R_yx*m->rpr_platform_point_x[i];
-    const real rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] +
-        rpr_S_y*m->rpr_base_frame_yx[i];
-    const real rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] +
-        rpr_S_y*m->rpr_base_frame_yy[i];
-    /* (rpr-q_2) displacement of joint 2 */
-    const real rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x +
-        rpr_S_in_turn1_y*rpr_S_in_turn1_y;
-    const real rpr_q_2 = m->rpr_branch_1[i]*root(rpr_q_2_t);
-    /* (rpr-q_1) displacement of joint 1 */
-    const real inv_rpr_q_2 = 1/rpr_q_2;
-    v->rpr_S_in_turn1_x = rpr_S_in_turn1_x;
-    v->rpr_S_in_turn1_y = rpr_S_in_turn1_y;
-    v->rpr_q_2_t = rpr_q_2_t;
-    v->rpr_q_2 = rpr_q_2;
-    v->inv_rpr_q_2 = inv_rpr_q_2;
+    v->rpr_Z_a_t = v->rpr_U_y*v->rpr_q_x - v->rpr_U_x*v->rpr_q_y;
 }
 
 INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
 {
-    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real rpr_c_1 = v->inv_rpr_q_2*v->rpr_S_in_turn1_x;
-    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rpr_s_1 = v->inv_rpr_q_2*v->rpr_S_in_turn1_y;
-    /* (rpr-S_ddot) acceleration of the connection point */
-    const real rpr_S_ddot_in_axes1_y = v->axis_x_rpr_axes1_x*v->rpr_S_ddot_y -
-        v->axis_x_rpr_axes1_y*v->rpr_S_ddot_x;
-    /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y -
-        2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
-    /* (rpr-qdd_1) acceleration of joint 1 */
-    const real rpr_qdd_1 = v->inv_rpr_q_2*rpr_rel_in_axes1_y;
     /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rpr_g_in_axes1_x = m->rpr_acc_2_t[i]*rpr_c_1 + m->rpr_acc_2_t_2[i]*rpr_s_1;
-    const real rpr_g_in_axes1_y = m->rpr_acc_2_t_2[i]*rpr_c_1 - m->rpr_acc_2_t[i]*rpr_s_1;
-    const real rpr_acc_2_in_axes1_x = v->axis_x_rpr_axes1_x*v->rpr_S_ddot_x +
-        v->axis_x_rpr_axes1_y*v->rpr_S_ddot_y - rpr_g_in_axes1_x;
-    const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
+    v->rpr_acc_2_in_axes1_x = v->rpr_S_ddot_in_axes1_x - v->rpr_g_in_axes1_x;
+    v->rpr_acc_2_in_axes1_y = v->rpr_S_ddot_in_axes1_y - v->rpr_g_in_axes1_y;
+    /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
+    v->rpr_phi_2_in_axes1_x = v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*v->rpr_qdd_1;
     /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rpr_mu_1_in_axes1_z = rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
-        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
-        rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
-        rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
-        m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1;
+    const real rpr_mu_1_in_axes1_z = v->rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
+        v->rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
+        v->rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
+        v->rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
+        m->rpr_J_group_1_in_axes1_zz[i]*v->rpr_qdd_1;
     /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rpr_c_in_axes1_y = -v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] -
-        m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1 - v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
-    v->rpr_qdd_1 = rpr_qdd_1;
-    v->rpr_acc_2_in_axes1_x = rpr_acc_2_in_axes1_x;
-    v->rpr_acc_2_in_axes1_y = rpr_acc_2_in_axes1_y;
-    v->rpr_c_in_axes1_y = rpr_c_in_axes1_y;
+    v->rpr_c_in_axes1_y = v->rpr_c_t - m->rpr_h_2_in_spec1_x[i]*v->rpr_qdd_1 -
+        v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
 }
 
 typedef struct {
     real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2,
-        rrr_r_1_in_axes1_y, rrr_r_1_in_axes1_x, rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, rrr_w_1_t,
-        rrr_w_1_t_2, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y,
-        rrr_qd_1_t, rrr_qd_1_t_2, rrr_a_p_x, rrr_a_p_y, rrr_S_dot_t, rrr_S_dot_t_2, rrr_S_dot_x,
-        rrr_S_dot_y, rrr_W_1_t, rrr_W_2_t, rrr_bias_in_axes2_x, rrr_S_ddot_x, rrr_S_ddot_y,
-        rrr_H_a_1_z, rrr_w_2_in_axes2_x, rrr_d_Gamma_2_in_axes2_x, rrr_d_Gamma_1_in_axes2_x,
-        rrr_d_c_in_axes2_xy, rrr_Kd_1, rrr_Kc_1, rrr_Ks_1, rrr_root_1, inv_rrr_rho2_1,
-        rrr_x_2_in_axes1_x, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x,
-        rrr_c_in_axes2_y;
+        rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x,
+        rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
+        rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x, rrr_a_p_y, rrr_qd_1,
+        rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x, rrr_c_t, rrr_c_t_2,
+        rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx, rrr_Q_xy,
+        rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y, rrr_Z_a_t,
+        rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1963,12 +1938,12 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rrr_q_x = R_xx*m->rrr_platform_point_x[i] - R_yx*m->rrr_platform_point_y[i];
-    const real rrr_q_y = R_xx*m->rrr_platform_point_y[i] + R_yx*m->rrr_platform_point_x[i];
+    v->rrr_q_x = R_xx*m->rrr_platform_point_x[i] - R_yx*m->rrr_platform_point_y[i];
+    v->rrr_q_y = R_xx*m->rrr_platform_point_y[i] + R_yx*m->rrr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + rrr_q_x;
+    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + v->rrr_q_x;
     const real t_y = X[1*w + j];
-    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + rrr_q_y;
+    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + v->rrr_q_y;
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
@@ -1980,65 +1955,52 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
         rrr_S_y*m->rrr_base_frame_yy[i]);
     /* (rrr-rho2_1) squared amplitude */
-    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+    v->rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
-    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+    v->rrr_disc_1 = v->rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
     /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
+    const real rrr_root_1 = m->rrr_branch_1[i]*root(v->rrr_disc_1);
     /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-    const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+    const real inv_rrr_rho2_1 = 1/v->rrr_rho2_1;
+    v->rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
+    v->rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real rrr_c_2 =
-        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
+    v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rrr_s_2 =
+    v->rrr_s_2 =
         -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*rrr_s_2;
+    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*v->rrr_s_2;
     const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
-        rrr_c_2*m->rrr_platform_joint_offset_x[i];
-    const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-    const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        v->rrr_c_2*m->rrr_platform_joint_offset_x[i];
+    v->rrr_r_1_in_axes2_x = v->rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*v->rrr_s_2;
+    v->rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*v->rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
-    const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
+    const real rrr_w_1_t = v->rrr_c_2*v->rrr_s_1 + v->rrr_c_1*v->rrr_s_2;
+    const real rrr_w_1_t_2 = v->rrr_c_1*v->rrr_c_2 - v->rrr_s_1*v->rrr_s_2;
+    v->axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_w_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
+    v->axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_yx[i]*rrr_w_1_t;
-    const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-    const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
-    const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
-    /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
-    const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-    v->rrr_q_x = rrr_q_x;
-    v->rrr_q_y = rrr_q_y;
-    v->rrr_rho2_1 = rrr_rho2_1;
-    v->rrr_disc_1 = rrr_disc_1;
-    v->rrr_c_1 = rrr_c_1;
-    v->rrr_s_1 = rrr_s_1;
-    v->rrr_c_2 = rrr_c_2;
-    v->rrr_s_2 = rrr_s_2;
-    v->rrr_r_1_in_axes1_y = rrr_r_1_in_axes1_y;
-    v->rrr_r_1_in_axes1_x = rrr_r_1_in_axes1_x;
-    v->rrr_r_1_in_axes2_x = rrr_r_1_in_axes2_x;
-    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
-    v->rrr_w_1_t = rrr_w_1_t;
-    v->rrr_w_1_t_2 = rrr_w_1_t_2;
-    v->axis_y_rrr_axes2_x = axis_y_rrr_axes2_x;
-    v->axis_x_rrr_axes2_x = axis_x_rrr_axes2_x;
-    v->rrr_w_1_in_axes2_x = rrr_w_1_in_axes2_x;
-    v->rrr_w_1_x = rrr_w_1_x;
-    v->rrr_w_1_y = rrr_w_1_y;
-    v->rrr_qd_1_t = rrr_qd_1_t;
-    v->rrr_qd_1_t_2 = rrr_qd_1_t_2;
+    v->rrr_w_1_in_axes2_x = -1/v->rrr_r_1_in_axes2_y;
+    v->rrr_w_1_x = v->axis_x_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
+    v->rrr_w_1_y = -v->axis_y_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
+    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->rrr_g_in_axes2_x = v->axis_x_rrr_axes2_x*m->gravity_x -
+        v->axis_y_rrr_axes2_x*m->gravity_y;
+    v->rrr_g_in_axes2_y = v->axis_x_rrr_axes2_x*m->gravity_y +
+        v->axis_y_rrr_axes2_x*m->gravity_x;
+    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    v->rrr_g_in_axes1_x = v->rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v->rrr_s_1;
+    v->rrr_g_in_axes1_y = v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1;
+    v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
+        v->rrr_g_in_axes1_x*m->rrr_h_1_in_spec1_y[i];
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    v->rrr_H_a_1_z = v->rrr_q_x*v->rrr_w_1_y - v->rrr_q_y*v->rrr_w_1_x;
 }
 
 INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
@@ -2046,11 +2008,9 @@ INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
     /* (rrr-a_p) acceleration of the connection point without its centripetal part */
     const real alpha_z = A[2*w + j];
     const real t_ddot_x = A[0*w + j];
-    const real rrr_a_p_x = t_ddot_x - alpha_z*v->rrr_q_y;
+    v->rrr_a_p_x = t_ddot_x - alpha_z*v->rrr_q_y;
     const real t_ddot_y = A[1*w + j];
-    const real rrr_a_p_y = t_ddot_y + alpha_z*v->rrr_q_x;
-    v->rrr_a_p_x = rrr_a_p_x;
-    v->rrr_a_p_y = rrr_a_p_y;
+    v->rrr_a_p_y = t_ddot_y + alpha_z*v->rrr_q_x;
 }
 
 INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -2065,55 +2025,47 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real t_dot_y = V[1*w + j];
     const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_2;
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
+    v->rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
         v->axis_y_rrr_axes2_x*rrr_S_dot_y);
+    /* (rrr-qd_2) rate of joint 2 */
+    v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
+        v->axis_y_rrr_axes2_x*rrr_S_dot_x - v->rrr_qd_1*v->rrr_r_1_in_axes2_x);
     /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+    const real rrr_W_1_t = v->rrr_qd_1*v->rrr_qd_1;
     /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-        m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
-        v->axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*v->rrr_r_1_in_axes2_x);
+    const real rrr_omega_2_in_axes2_z = v->rrr_qd_1 + v->rrr_qd_2;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+    /* (rrr-u_1) centripetal acceleration of the connection point */
+    v->rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
+    v->rrr_u_1_t = omega_z*rrr_S_dot_t;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
+    v->rrr_bias_in_axes2_y = rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
+    v->rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
         rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
-    v->rrr_S_dot_t = rrr_S_dot_t;
-    v->rrr_S_dot_t_2 = rrr_S_dot_t_2;
-    v->rrr_S_dot_x = rrr_S_dot_x;
-    v->rrr_S_dot_y = rrr_S_dot_y;
-    v->rrr_W_1_t = rrr_W_1_t;
-    v->rrr_W_2_t = rrr_W_2_t;
-    v->rrr_bias_in_axes2_x = rrr_bias_in_axes2_x;
+    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->rrr_c_t = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i];
+    v->rrr_c_t_2 = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i];
 }
 
-INLINE void stage_rrr_A_V_X(size_t w, size_t j, const real *V, values_rrr *v)
+INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-S_ddot) acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real rrr_S_ddot_x = v->rrr_a_p_x - omega_z*v->rrr_S_dot_t_2;
-    const real rrr_S_ddot_y = v->rrr_a_p_y - omega_z*v->rrr_S_dot_t;
-    v->rrr_S_ddot_x = rrr_S_ddot_x;
-    v->rrr_S_ddot_y = rrr_S_ddot_y;
-}
-
-INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
-{
-    /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes2_y = v->rrr_c_2*m->rrr_platform_joint_offset_x[i]*v->rrr_s_2 -
-        v->rrr_r_1_in_axes1_x*v->rrr_s_2;
-    /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-    const real rrr_w_1_x = rrr_w_1_in_axes2_x*(m->rrr_base_frame_yy[i]*v->rrr_w_1_t_2 -
-        m->rrr_base_frame_yx[i]*v->rrr_w_1_t);
-    const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(m->rrr_base_frame_xy[i]*v->rrr_w_1_t_2 -
-        m->rrr_base_frame_xx[i]*v->rrr_w_1_t);
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    const real rrr_H_a_1_z = v->rrr_q_x*rrr_w_1_y - v->rrr_q_y*rrr_w_1_x;
-    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
-    v->rrr_w_1_x = rrr_w_1_x;
-    v->rrr_w_1_y = rrr_w_1_y;
-    v->rrr_H_a_1_z = rrr_H_a_1_z;
+    const real rrr_S_ddot_x = v->rrr_a_p_x + v->rrr_u_1_x;
+    const real rrr_S_ddot_y = v->rrr_a_p_y - v->rrr_u_1_t;
+    v->rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*rrr_S_ddot_x -
+        v->axis_y_rrr_axes2_x*rrr_S_ddot_y;
+    v->rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*rrr_S_ddot_y +
+        v->axis_y_rrr_axes2_x*rrr_S_ddot_x;
+    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_rel_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
+    const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_bias_in_axes2_y;
+    /* (rrr-qdd_1) acceleration of joint 1 */
+    v->rrr_qdd_1_t = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    /* (rrr-qdd_2) acceleration of joint 2 */
+    v->rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
+        v->rrr_qdd_1_t*v->rrr_r_1_in_axes2_x);
 }
 
 INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
@@ -2135,85 +2087,90 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
     const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
         m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
         m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
-    v->rrr_w_2_in_axes2_x = rrr_w_2_in_axes2_x;
-    v->rrr_d_Gamma_2_in_axes2_x = rrr_d_Gamma_2_in_axes2_x;
-    v->rrr_d_Gamma_1_in_axes2_x = rrr_d_Gamma_1_in_axes2_x;
-    v->rrr_d_c_in_axes2_xy = rrr_d_c_in_axes2_xy;
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v->rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x)
+        - m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_1_in_axes2_x*v->rrr_w_1_in_axes2_x -
+        rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+    const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
+        v->axis_x_rrr_axes2_x*rrr_Q_t_2;
+    const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
+        v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+    v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    /* (M_ta) coupling block of M */
+    v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
+    v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
+    /* (M_aa) rotational block of M */
+    v->rrr_M_aa_t = v->rrr_M_ta_t_2*v->rrr_q_x - v->rrr_M_ta_t*v->rrr_q_y;
 }
 
-INLINE void stage_rrr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_rrr *v)
+INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_yx = s[1*w + j];
-    const real t_x = X[0*w + j];
-    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + R_xx*m->rrr_platform_point_x[i] -
-        R_yx*m->rrr_platform_point_y[i];
-    const real t_y = X[1*w + j];
-    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + R_xx*m->rrr_platform_point_y[i] +
-        R_yx*m->rrr_platform_point_x[i];
-    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 1 */
-    const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
-    /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
-        rrr_S_y*m->rrr_base_frame_yx[i]);
-    /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
-        rrr_S_y*m->rrr_base_frame_yy[i]);
-    /* (rrr-rho2_1) squared amplitude */
-    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-    /* (rrr-disc_1) discriminant */
-    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-    /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
-    /* (rrr-q_1) displacement of joint 1 */
-    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-    /* (rrr-x_2) from the origin of joint 2 to the connection point */
-    const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
-        m->rrr_joint2_offset_x[i];
-    v->rrr_Kd_1 = rrr_Kd_1;
-    v->rrr_Kc_1 = rrr_Kc_1;
-    v->rrr_Ks_1 = rrr_Ks_1;
-    v->rrr_rho2_1 = rrr_rho2_1;
-    v->rrr_disc_1 = rrr_disc_1;
-    v->rrr_root_1 = rrr_root_1;
-    v->inv_rrr_rho2_1 = inv_rrr_rho2_1;
-    v->rrr_x_2_in_axes1_x = rrr_x_2_in_axes1_x;
+    /* (rrr-u_1) centripetal acceleration of the connection point */
+    const real rrr_u_1_in_axes2_x = v->axis_x_rrr_axes2_x*v->rrr_u_1_x +
+        v->axis_y_rrr_axes2_x*v->rrr_u_1_t;
+    const real rrr_u_1_in_axes2_y = v->axis_y_rrr_axes2_x*v->rrr_u_1_x -
+        v->axis_x_rrr_axes2_x*v->rrr_u_1_t;
+    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v->rrr_bias_in_axes2_x;
+    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - v->rrr_bias_in_axes2_y;
+    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+    const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
+        rrr_B_1_o_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x - v->rrr_g_in_axes2_x;
+    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v->rrr_g_in_axes2_y;
+    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
+    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_mu_1_o_in_axes1_z = -v->rrr_mu_1_t_3 -
+        rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
+    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rrr_c_o_in_axes2_x = v->rrr_c_t +
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
+        v->rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v->rrr_r_1_in_axes2_x -
+        rrr_N_1_o_in_axes1_z);
+    const real rrr_c_o_in_axes2_y = v->rrr_c_t_2 -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
+    /* (rrr-U) velocity and gravity terms of the leg force */
+    v->rrr_U_x = -v->axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
+    v->rrr_U_y = v->axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    /* (Z_a) rotational part of Z */
+    v->rrr_Z_a_t = v->rrr_U_y*v->rrr_q_x - v->rrr_U_x*v->rrr_q_y;
 }
 
 INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-S_ddot) acceleration of the connection point */
-    const real rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*v->rrr_S_ddot_x -
-        v->axis_y_rrr_axes2_x*v->rrr_S_ddot_y;
-    const real rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*v->rrr_S_ddot_y +
-        v->axis_y_rrr_axes2_x*v->rrr_S_ddot_x;
-    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
-        v->rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
-    /* (rrr-B_1) acceleration tensor of link 1 */
-    const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
     /* (rrr-alpha_2) angular acceleration of link 2 */
-    const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
-        rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
+    const real rrr_alpha_2_in_axes2_z = v->rrr_qdd_2 - v->rrr_qdd_1_t;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_in_axes2_x = v->axis_y_rrr_axes2_x*m->gravity_y -
-        v->axis_x_rrr_axes2_x*m->gravity_x + rrr_S_ddot_in_axes2_x;
-    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
-        v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
+    v->rrr_acc_2_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_g_in_axes2_x;
+    v->rrr_acc_2_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_g_in_axes2_y;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_mu_2_in_axes2_z = rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+    const real rrr_mu_2_in_axes2_z = v->rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        v->rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v->rrr_s_1) -
-        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1)
-        - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
+    const real rrr_mu_1_in_axes1_z = -v->rrr_mu_1_t_3 -
+        m->rrr_J_1_in_spec1_zz[i]*v->rrr_qdd_1_t;
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
@@ -2222,42 +2179,38 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
     const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_in_axes2_x = v->rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
+    v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_in_axes2_y;
-    v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
-    v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
-    v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
-    v->rrr_c_in_axes2_y = rrr_c_in_axes2_y;
+    v->rrr_c_in_axes2_y = v->rrr_c_t_2 - rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] -
+        rrr_G_in_axes2_y;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    values *v, real *s)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->h_star_x;
-    s[3*w + k] = v->h_star_y;
+    s[2*w + k] = v->W_p_xx;
+    s[3*w + k] = v->h_star_x;
+    s[4*w + k] = v->h_star_y;
 }
 
-INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
-    *s)
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
-    stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
-    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->f_p_t - m->Z_p_t;
+    const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
-    s[4*w + k] = Z_p_x;
-    s[5*w + k] = Z_p_y;
-    s[6*w + k] = Z_q_z;
+    s[5*w + k] = Z_p_x;
+    s[6*w + k] = Z_p_y;
+    s[7*w + k] = Z_q_z;
 }
 
 INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2265,39 +2218,18 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    stage_rpr_V_X(w, j, V, &v);
-    stage_rpr_Z_dynamics(m, w, i, j, V, &v);
-    /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rpr_d_c_in_axes1_xy = v.inv_rpr_q_2*m->rpr_h_2_in_spec1_y[i];
-    const real rpr_d_c_in_axes1_yy = -v.inv_rpr_q_2*m->rpr_h_2_in_spec1_x[i] -
-        v.inv_rpr_q_2*(m->rpr_h_2_in_spec1_x[i] +
-        v.inv_rpr_q_2*m->rpr_J_group_1_in_axes1_zz[i]);
-    /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
-    const real rpr_Q_t_2 = v.axis_x_rpr_axes1_y*rpr_Q_t -
-        v.axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
-    const real rpr_Q_t_3 = v.axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy +
-        v.axis_x_rpr_axes1_x*rpr_Q_t;
-    const real rpr_Q_xx = -2*v.axis_x_rpr_axes1_y*rpr_Q_t_2;
-    const real rpr_Q_xy = v.axis_x_rpr_axes1_x*rpr_Q_t_2 + v.axis_x_rpr_axes1_y*rpr_Q_t_3;
-    const real rpr_Q_yy = -2*v.axis_x_rpr_axes1_x*rpr_Q_t_3;
-    /* (M_ta) coupling block of M */
-    const real rpr_M_ta_t = rpr_Q_xy*v.rpr_q_x - rpr_Q_xx*v.rpr_q_y;
-    const real rpr_M_ta_t_2 = rpr_Q_yy*v.rpr_q_x - rpr_Q_xy*v.rpr_q_y;
-    /* (M_aa) rotational block of M */
-    const real rpr_M_aa_t = rpr_M_ta_t_2*v.rpr_q_x - rpr_M_ta_t*v.rpr_q_y;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    const real rpr_H_a_2_z = v.axis_x_rpr_axes1_y*v.rpr_q_x - v.axis_x_rpr_axes1_x*v.rpr_q_y;
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_M_dynamics(m, i, &v);
+    stage_rpr_Z_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rpr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, rpr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, rpr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.rpr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rpr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rpr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v.rpr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v.rpr_M_aa_t);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
     gather(&terms[6*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
     gather(&terms[7*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
@@ -2306,15 +2238,15 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     /* (rpr-w_2) reciprocal vector 2 */
     o[0*count + k] = v.axis_x_rpr_axes1_x;
     o[1*count + k] = v.axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) */
-    o[2*count + k] = rpr_H_a_2_z;
-    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + rpr_H_a_2_z);
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rpr_H_a_2_z;
+    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void dynamics_place_rpr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[0*w + k] = o[0*count + at];
     H[NU*w + k] = o[1*count + at];
@@ -2330,106 +2262,34 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (rrr-u_1) centripetal acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
-    const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
-    const real rrr_u_1_in_axes2_x = v.axis_x_rrr_axes2_x*rrr_u_1_x +
-        v.axis_y_rrr_axes2_x*rrr_u_1_t;
-    const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
-        v.axis_x_rrr_axes2_x*rrr_u_1_t;
-    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
-    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-        v.rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
-    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-    const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
-    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
-        rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = v.axis_y_rrr_axes2_x*m->gravity_y -
-        v.axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
-    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*m->gravity_y
-        - v.axis_y_rrr_axes2_x*m->gravity_x;
-    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
-        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
-    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
-        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
-    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
-        v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
-        v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
-        v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
-        v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
-    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
-        v.axis_x_rrr_axes2_x*rrr_Q_t_2;
-    const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
-        v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
-    const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
-    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
-    /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
-        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
-    const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-    /* (M_ta) */
-    const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
-    const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
-    /* (M_aa) */
-    const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
-    /* (Z_a) */
-    const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
+    stage_rrr_Z_dynamics(m, i, &v);
     /* (M_tt) */
-    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
     /* (M_ta) */
-    gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    gather(&terms[3*count + k], add, v.rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
     /* (M_aa) */
-    gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rrr_M_aa_t);  /* M_aa_zz_of_legs */
     /* (Z_t) */
-    gather(&terms[6*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[6*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
     /* (Z_a) */
-    gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
+    gather(&terms[8*count + k], add, v.rrr_Z_a_t);  /* Z_a_z_of_legs */
     /* (rrr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_w_1_x;
     o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) */
-    o[2*count + k] = rrr_H_a_1_z;
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + rrr_H_a_1_z);
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_H_a_1_z;
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void dynamics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[1*w + k] = o[0*count + at];
     H[(NU + 1)*w + k] = o[1*count + at];
@@ -2446,87 +2306,33 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_V_X(m, w, i, j, V, &v);
     stage_prr_M_dynamics(m, i, &v);
-    stage_prr_Z_dynamics(m, w, i, j, V, &v);
-    /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real prr_rel_o_in_axes2_x = v.prr_u_1_in_axes2_x +
-        m->prr_platform_joint_offset_x[i]*v.prr_qd_2*v.prr_qd_2;
-    /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real prr_B_2_o_in_axes2_xy = v.prr_w_1_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
-        prr_rel_o_in_axes2_x*v.prr_s_2);
-    /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_o_in_axes0_x = v.prr_c_2*prr_rel_o_in_axes2_x -
-        m->prr_g_in_axes0_x[i] - v.prr_s_2*v.prr_u_1_in_axes2_y +
-        prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x;
-    /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
-    const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
-    /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        v.prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
-    /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real prr_c_o_t = v.prr_w_1_t*(prr_mu_2_o_in_axes2_z -
-        prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
-    const real prr_c_o_in_axes2_x = v.prr_W_2_t*m->prr_h_2_in_spec2_x[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v.prr_c_2*prr_f_1_o_in_axes0_x +
-        prr_c_o_t*v.prr_s_2;
-    const real prr_c_o_in_axes2_y = v.prr_W_2_t*m->prr_h_2_in_spec2_y[i] +
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v.prr_s_2 +
-        v.prr_c_2*prr_c_o_t;
-    /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real prr_Q_t = m->prr_h_2_in_spec2_x[i]*v.prr_w_2_in_axes2_y +
-        v.prr_d_Gamma_2_in_axes2_y*v.prr_w_2_in_axes2_y +
-        v.prr_d_Gamma_1_in_axes2_y*v.prr_w_1_in_axes2_y + v.prr_d_c_in_axes2_xx;
-    const real prr_Q_t_2 = R(0.5)*prr_Q_t;
-    const real prr_Q_t_3 = v.axis_y_prr_axes2_x*prr_Q_t_2 -
-        v.axis_x_prr_axes2_x*v.prr_d_c_in_axes2_xy;
-    const real prr_Q_t_4 = v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy +
-        v.axis_x_prr_axes2_x*prr_Q_t_2;
-    const real prr_Q_xx = 2*v.axis_y_prr_axes2_x*prr_Q_t_3 - v.prr_d_c_in_axes2_xx;
-    const real prr_Q_xy = v.axis_x_prr_axes2_x*prr_Q_t_3 + v.axis_y_prr_axes2_x*prr_Q_t_4;
-    const real prr_Q_yy = 2*v.axis_x_prr_axes2_x*prr_Q_t_4 - v.prr_d_c_in_axes2_xx;
-    /* (prr-U) velocity and gravity terms of the leg force */
-    const real prr_U_x = -v.axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
-        v.axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
-    const real prr_U_y = v.axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
-        v.axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
-    /* (M_ta) */
-    const real prr_M_ta_t = prr_Q_xy*v.prr_q_x - prr_Q_xx*v.prr_q_y;
-    const real prr_M_ta_t_2 = prr_Q_yy*v.prr_q_x - prr_Q_xy*v.prr_q_y;
-    /* (M_aa) */
-    const real prr_M_aa_t = prr_M_ta_t_2*v.prr_q_x - prr_M_ta_t*v.prr_q_y;
-    /* (Z_a) */
-    const real prr_Z_a_t = prr_U_y*v.prr_q_x - prr_U_x*v.prr_q_y;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    const real prr_H_a_1_z = v.prr_q_x*v.prr_w_1_y - v.prr_q_y*v.prr_w_1_x;
+    stage_prr_Z_dynamics(m, w, i, j, s, &v);
     /* (M_tt) */
-    gather(&terms[0*count + k], add, prr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, prr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, prr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.prr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.prr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.prr_Q_yy);  /* M_tt_yy_of_legs */
     /* (M_ta) */
-    gather(&terms[3*count + k], add, prr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, prr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    gather(&terms[3*count + k], add, v.prr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.prr_M_ta_t_2);  /* M_ta_yz_of_legs */
     /* (M_aa) */
-    gather(&terms[5*count + k], add, prr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[5*count + k], add, v.prr_M_aa_t);  /* M_aa_zz_of_legs */
     /* (Z_t) */
-    gather(&terms[6*count + k], add, prr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, prr_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[6*count + k], add, v.prr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, v.prr_U_y);  /* Z_t_y_of_legs */
     /* (Z_a) */
-    gather(&terms[8*count + k], add, prr_Z_a_t);  /* Z_a_z_of_legs */
+    gather(&terms[8*count + k], add, v.prr_Z_a_t);  /* Z_a_z_of_legs */
     /* (prr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.prr_w_1_x;
     o[1*count + k] = v.prr_w_1_y;
-    /* (prr-H_a_1) */
-    o[2*count + k] = prr_H_a_1_z;
-    o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + prr_H_a_1_z);
+    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.prr_H_a_1_z;
+    o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + v.prr_H_a_1_z);
     o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
 INLINE void dynamics_place_prr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[2*w + k] = o[0*count + at];
     H[(NU + 2)*w + k] = o[1*count + at];
@@ -2537,7 +2343,7 @@ INLINE void dynamics_place_prr(size_t w, size_t k, size_t at, size_t count, cons
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2546,24 +2352,24 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[3*w + k];
+    const real h_star_y = s[4*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[2*w + k];
+    const real h_star_x = s[3*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
-    const real Z_p_x = s[4*w + k];
+    const real Z_p_x = s[5*w + k];
     const real Z_t_x_of_legs = sums[6*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[5*w + k];
+    const real Z_p_y = s[6*w + k];
     const real Z_t_y_of_legs = sums[7*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[8*w + k];
-    const real Z_q_z = s[6*w + k];
+    const real Z_q_z = s[7*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2588,14 +2394,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
-    real s[7] = {0}, sums[9] = {0};
+    real s[8] = {0}, sums[9] = {0};
     real terms_rpr[9*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
     real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     real terms_prr[9*LEGS(LEGS_OF_prr)] = {0}, o_prr[6*LEGS(LEGS_OF_prr)] = {0};
     values v;
-    dynamics_before(m, 1, 0, X, &v, s);
+    dynamics_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         dynamics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
@@ -2627,21 +2433,21 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
             sums[n] += terms_prr[n*LEGS(LEGS_OF_prr) + leg];
         }
     }
-    dynamics_between(m, 1, 0, V, &v, s);
+    dynamics_between(m, 1, 0, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[7*LANES], sums[9*LANES];
+    real s[8*LANES], sums[9*LANES];
     real o_rpr[5*LANES];
     real o_rrr[6*LANES];
     real o_prr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s);
-        dynamics_between(m, LANES, k, V, &v, s);
+        dynamics_before(m, LANES, k, X, V, &v, s);
+        dynamics_between(m, LANES, k, &v, s);
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -2679,8 +2485,8 @@ INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, value
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->h_star_x;
-    s[3*w + k] = v->h_star_y;
+    s[3*w + k] = v->h_star_x;
+    s[4*w + k] = v->h_star_y;
 }
 
 INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2688,38 +2494,21 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rpr_d_c_in_axes1_xy = m->rpr_h_2_in_spec1_y[i]*v.rpr_w_1_in_axes1_y;
-    const real rpr_d_c_in_axes1_yy = -m->rpr_h_2_in_spec1_x[i]*v.rpr_w_1_in_axes1_y -
-        v.rpr_w_1_in_axes1_y*(m->rpr_h_2_in_spec1_x[i] +
-        m->rpr_J_group_1_in_axes1_zz[i]*v.rpr_w_1_in_axes1_y);
-    /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
-    const real rpr_Q_t_2 = rpr_Q_t*v.rpr_w_2_y - rpr_d_c_in_axes1_xy*v.rpr_w_2_x;
-    const real rpr_Q_t_3 = rpr_d_c_in_axes1_xy*v.rpr_w_2_y + rpr_Q_t*v.rpr_w_2_x;
-    const real rpr_Q_xx = -2*rpr_Q_t_2*v.rpr_w_2_y;
-    const real rpr_Q_xy = rpr_Q_t_2*v.rpr_w_2_x + rpr_Q_t_3*v.rpr_w_2_y;
-    const real rpr_Q_yy = -2*rpr_Q_t_3*v.rpr_w_2_x;
-    /* (M_ta) coupling block of M */
-    const real rpr_M_ta_t = rpr_Q_xy*v.rpr_q_x - rpr_Q_xx*v.rpr_q_y;
-    const real rpr_M_ta_t_2 = rpr_Q_yy*v.rpr_q_x - rpr_Q_xy*v.rpr_q_y;
-    /* (M_aa) rotational block of M */
-    const real rpr_M_aa_t = rpr_M_ta_t_2*v.rpr_q_x - rpr_M_ta_t*v.rpr_q_y;
+    stage_rpr_M_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rpr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, rpr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, rpr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.rpr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rpr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rpr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v.rpr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v.rpr_M_aa_t);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
-INLINE void M_place_rpr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -2730,45 +2519,21 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
-    const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
-    const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
-        rrr_Q_t*m->rrr_base_frame_xx[i];
-    const real axis_x_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_yy[i] -
-        rrr_Q_t*m->rrr_base_frame_yx[i];
-    const real rrr_Q_t_3 = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
-        v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
-        v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
-        v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
-    const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-    const real rrr_Q_t_5 = axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
-        axis_x_rrr_axes2_x*rrr_Q_t_4;
-    const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
-        axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
-    const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
-    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
-    /* (M_ta) */
-    const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
-    const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
-    /* (M_aa) */
-    const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
     /* (M_tt) */
-    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
     /* (M_ta) */
-    gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    gather(&terms[3*count + k], add, v.rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
     /* (M_aa) */
-    gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rrr_M_aa_t);  /* M_aa_zz_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -2780,45 +2545,27 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_M_dynamics(m, i, &v);
-    /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real prr_Q_t = m->prr_h_2_in_spec2_x[i]*v.prr_w_2_in_axes2_y +
-        v.prr_d_Gamma_2_in_axes2_y*v.prr_w_2_in_axes2_y +
-        v.prr_d_Gamma_1_in_axes2_y*(v.prr_c_2*v.prr_w_1_t_2 - v.prr_s_2) +
-        v.prr_d_c_in_axes2_xx;
-    const real prr_Q_t_2 = R(0.5)*prr_Q_t;
-    const real prr_Q_t_3 = v.axis_y_prr_axes2_x*prr_Q_t_2 -
-        v.axis_x_prr_axes2_x*v.prr_d_c_in_axes2_xy;
-    const real prr_Q_t_4 = v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy +
-        v.axis_x_prr_axes2_x*prr_Q_t_2;
-    const real prr_Q_xx = 2*v.axis_y_prr_axes2_x*prr_Q_t_3 - v.prr_d_c_in_axes2_xx;
-    const real prr_Q_xy = v.axis_x_prr_axes2_x*prr_Q_t_3 + v.axis_y_prr_axes2_x*prr_Q_t_4;
-    const real prr_Q_yy = 2*v.axis_x_prr_axes2_x*prr_Q_t_4 - v.prr_d_c_in_axes2_xx;
-    /* (M_ta) */
-    const real prr_M_ta_t = prr_Q_xy*v.prr_q_x - prr_Q_xx*v.prr_q_y;
-    const real prr_M_ta_t_2 = prr_Q_yy*v.prr_q_x - prr_Q_xy*v.prr_q_y;
-    /* (M_aa) */
-    const real prr_M_aa_t = prr_M_ta_t_2*v.prr_q_x - prr_M_ta_t*v.prr_q_y;
     /* (M_tt) */
-    gather(&terms[0*count + k], add, prr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, prr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, prr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.prr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.prr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.prr_Q_yy);  /* M_tt_yy_of_legs */
     /* (M_ta) */
-    gather(&terms[3*count + k], add, prr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, prr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    gather(&terms[3*count + k], add, v.prr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.prr_M_ta_t_2);  /* M_ta_yz_of_legs */
     /* (M_aa) */
-    gather(&terms[5*count + k], add, prr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[5*count + k], add, v.prr_M_aa_t);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
-INLINE void M_place_prr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_prr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2827,10 +2574,10 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
-    const real h_star_y = s[3*w + k];
+    const real h_star_y = s[4*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
-    const real h_star_x = s[2*w + k];
+    const real h_star_x = s[3*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
@@ -2851,9 +2598,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[4] = {0}, sums[6] = {0};
+    real s[5] = {0}, sums[6] = {0};
     real terms_rpr[6*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
     real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     real terms_prr[6*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
@@ -2893,9 +2640,10 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
-    real s[4*LANES], sums[6*LANES];
+    real s[5*LANES], sums[6*LANES];
     real o_rpr[LANES];
     real o_rrr[2*LANES];
     real o_prr[2*LANES];
@@ -2934,24 +2682,27 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, values
+    *v, real *s)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->W_p_xx;
 }
 
-INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+INLINE void Z_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
-    stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
-    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->f_p_t - m->Z_p_t;
+    const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
-    s[2*w + k] = Z_p_x;
-    s[3*w + k] = Z_p_y;
-    s[4*w + k] = Z_q_z;
+    s[3*w + k] = Z_p_x;
+    s[4*w + k] = Z_p_y;
+    s[5*w + k] = Z_q_z;
 }
 
 INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2959,8 +2710,8 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    stage_rpr_V_X(w, j, V, &v);
-    stage_rpr_Z_dynamics(m, w, i, j, V, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_Z_dynamics(m, i, &v);
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
@@ -2970,7 +2721,7 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2);
 }
 
-INLINE void Z_place_rpr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -2981,88 +2732,18 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    /* (rrr-qd_1) rate of joint 1 */
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
-    const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
-        axis_y_rrr_axes2_x*v.rrr_S_dot_y);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-    /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
-        axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
-    /* (rrr-W_2) centripetal tensor of link 2 */
-    const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-    /* (rrr-u_1) centripetal acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
-    const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
-    const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
-        axis_y_rrr_axes2_x*rrr_u_1_t;
-    const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
-        axis_x_rrr_axes2_x*rrr_u_1_t;
-    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
-    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
-    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-        rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
-    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-    const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
-    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
-        rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = axis_y_rrr_axes2_x*m->gravity_y -
-        axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
-    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*m->gravity_y -
-        axis_y_rrr_axes2_x*m->gravity_x;
-    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
-        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
-    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
-        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
-    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rrr_c_o_in_axes2_x = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
-        v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
-    /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
-        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
-    const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-    /* (Z_a) */
-    const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
+    stage_rrr_Z_dynamics(m, i, &v);
     /* (Z_t) */
-    gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
     /* (Z_a) */
-    gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
+    gather(&terms[2*count + k], add, v.rrr_Z_a_t);  /* Z_a_z_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -3074,75 +2755,34 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_V_X(m, w, i, j, V, &v);
-    stage_prr_Z_dynamics(m, w, i, j, V, &v);
-    /* (prr-qd_2) rate of joint 2 */
-    const real prr_qd_2_t = -1/v.prr_v_2_in_axes0_y;
-    const real prr_qd_2 = -prr_qd_2_t*(v.prr_S_dot_x*m->prr_base_frame_xy[i] +
-        v.prr_S_dot_y*m->prr_base_frame_yy[i]);
-    /* (prr-W_2) centripetal tensor of link 2 */
-    const real prr_W_2_t = prr_qd_2*prr_qd_2;
-    /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real prr_rel_o_in_axes2_x = v.prr_u_1_in_axes2_x +
-        m->prr_platform_joint_offset_x[i]*prr_qd_2*prr_qd_2;
-    /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real prr_B_2_o_in_axes2_xy = prr_qd_2_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
-        prr_rel_o_in_axes2_x*v.prr_s_2);
-    /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_o_in_axes0_x = v.prr_c_2*prr_rel_o_in_axes2_x -
-        m->prr_g_in_axes0_x[i] - v.prr_s_2*v.prr_u_1_in_axes2_y +
-        prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x;
-    /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
-    const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
-    /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        v.prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
-    /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z -
-        prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
-    const real prr_c_o_in_axes2_x = prr_W_2_t*m->prr_h_2_in_spec2_x[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v.prr_c_2*prr_f_1_o_in_axes0_x +
-        prr_c_o_t*v.prr_s_2;
-    const real prr_c_o_in_axes2_y = prr_W_2_t*m->prr_h_2_in_spec2_y[i] +
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v.prr_s_2 +
-        v.prr_c_2*prr_c_o_t;
-    /* (prr-U) velocity and gravity terms of the leg force */
-    const real prr_U_x = -v.axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
-        v.axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
-    const real prr_U_y = v.axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
-        v.axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
-    /* (Z_a) */
-    const real prr_Z_a_t = prr_U_y*v.prr_q_x - prr_U_x*v.prr_q_y;
+    stage_prr_Z_dynamics(m, w, i, j, s, &v);
     /* (Z_t) */
-    gather(&terms[0*count + k], add, prr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, prr_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[0*count + k], add, v.prr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.prr_U_y);  /* Z_t_y_of_legs */
     /* (Z_a) */
-    gather(&terms[2*count + k], add, prr_Z_a_t);  /* Z_a_z_of_legs */
+    gather(&terms[2*count + k], add, v.prr_Z_a_t);  /* Z_a_z_of_legs */
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
-INLINE void Z_place_prr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_prr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
-    const real Z_p_x = s[2*w + k];
+    const real Z_p_x = s[3*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[3*w + k];
+    const real Z_p_y = s[4*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[2*w + k];
-    const real Z_q_z = s[4*w + k];
+    const real Z_q_z = s[5*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
@@ -3152,14 +2792,14 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
+    real s[6] = {0}, sums[3] = {0};
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
     values v;
-    Z_before(m, 1, 0, X, &v, s);
+    Z_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         Z_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
@@ -3191,21 +2831,21 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
             sums[n] += terms_prr[n*LEGS(LEGS_OF_prr) + leg];
         }
     }
-    Z_between(m, 1, 0, V, &v, s);
+    Z_between(m, 1, 0, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
-    real s[5*LANES], sums[3*LANES];
+    real s[6*LANES], sums[3*LANES];
     real o_rpr[LANES];
     real o_rrr[2*LANES];
     real o_prr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s);
-        Z_between(m, LANES, k, V, &v, s);
+        Z_before(m, LANES, k, X, V, &v, s);
+        Z_between(m, LANES, k, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -3250,20 +2890,18 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    const real rpr_H_a_2_z = v.rpr_q_x*v.rpr_w_2_y - v.rpr_q_y*v.rpr_w_2_x;
     /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.rpr_w_2_x;
-    o[1*count + k] = v.rpr_w_2_y;
-    /* (rpr-H_a_2) */
-    o[2*count + k] = rpr_H_a_2_z;
-    o[4*count + k] = v.rpr_w_2_x + (v.rpr_w_2_y + rpr_H_a_2_z);
+    o[0*count + k] = v.axis_x_rpr_axes1_x;
+    o[1*count + k] = v.axis_x_rpr_axes1_y;
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rpr_H_a_2_z;
+    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void H_place_rpr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    verdict *t)
+    status_flags *t)
 {
     H[0*w + k] = o[0*count + at];
     H[NU*w + k] = o[1*count + at];
@@ -3277,7 +2915,6 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    stage_rrr_H_condition(m, i, &v);
     /* (rrr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_w_1_x;
     o[1*count + k] = v.rrr_w_1_y;
@@ -3290,7 +2927,7 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 }
 
 INLINE void H_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    verdict *t)
+    status_flags *t)
 {
     H[1*w + k] = o[0*count + at];
     H[(NU + 1)*w + k] = o[1*count + at];
@@ -3305,7 +2942,6 @@ INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    stage_prr_H_condition(m, i, &v);
     /* (prr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.prr_w_1_x;
     o[1*count + k] = v.prr_w_1_y;
@@ -3317,7 +2953,7 @@ INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 }
 
 INLINE void H_place_prr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    verdict *t)
+    status_flags *t)
 {
     H[2*w + k] = o[0*count + at];
     H[(NU + 2)*w + k] = o[1*count + at];
@@ -3327,9 +2963,9 @@ INLINE void H_place_prr(size_t w, size_t k, size_t at, size_t count, const real 
     t->total[k] += o[5*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
@@ -3355,9 +2991,10 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_rpr[5*LANES];
     real o_rrr[6*LANES];
     real o_prr[6*LANES];
@@ -3404,6 +3041,7 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     values *v, real *s)
 {
     stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -3411,13 +3049,13 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     /* (f_p) inertia force of the platform less its weight */
     const real alpha_z = A[2*w + k];
-    const real f_p_x = a_t_x*m->m_star + v->W_p_xx*v->h_star_x - alpha_z*v->h_star_y;
-    const real f_p_y = a_t_y*m->m_star + v->W_p_xx*v->h_star_y + alpha_z*v->h_star_x;
+    const real f_p_x = a_t_x*m->m_star - alpha_z*v->h_star_y + v->f_p_t;
+    const real f_p_y = a_t_y*m->m_star + alpha_z*v->h_star_x - v->f_p_t_2;
     /* (mu_p) inertia moment of the platform less that of its weight */
     const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v->h_star_x - a_t_x*v->h_star_y;
-    s[2*w + k] = f_p_x;
-    s[3*w + k] = f_p_y;
-    s[4*w + k] = mu_p_z;
+    s[3*w + k] = f_p_x;
+    s[4*w + k] = f_p_y;
+    s[5*w + k] = mu_p_z;
 }
 
 INLINE void required_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3427,22 +3065,17 @@ INLINE void required_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_A_X(w, j, A, &v);
-    stage_rpr_V_X(w, j, V, &v);
-    stage_rpr_A_V_X(w, j, V, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_A_V_X(&v);
     stage_rpr_legs_required(m, i, &v);
-    /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
-    const real rpr_phi_2_in_axes1_x = v.rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i] -
-        m->rpr_h_2_in_spec1_y[i]*v.rpr_qdd_1;
     /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rpr_c_x = -v.axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x -
+    const real rpr_c_x = -v.axis_x_rpr_axes1_x*v.rpr_phi_2_in_axes1_x -
         v.axis_x_rpr_axes1_y*v.rpr_c_in_axes1_y;
     const real rpr_c_y = v.axis_x_rpr_axes1_x*v.rpr_c_in_axes1_y -
-        v.axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x;
+        v.axis_x_rpr_axes1_y*v.rpr_phi_2_in_axes1_x;
     /* (R_a) moment that actuators and external wrench must give */
     const real rpr_R_a_t = rpr_c_x*v.rpr_q_y - rpr_c_y*v.rpr_q_x;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    const real rpr_H_a_2_z = v.axis_x_rpr_axes1_y*v.rpr_q_x - v.axis_x_rpr_axes1_x*v.rpr_q_y;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rpr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rpr_c_y);  /* R_t_y_of_legs */
@@ -3451,14 +3084,14 @@ INLINE void required_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     /* (rpr-w_2) reciprocal vector 2 */
     o[0*count + k] = v.axis_x_rpr_axes1_x;
     o[1*count + k] = v.axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) */
-    o[2*count + k] = rpr_H_a_2_z;
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rpr_H_a_2_z;
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void required_place_rpr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[0*w + k] = o[0*count + at];
     H[NU*w + k] = o[1*count + at];
@@ -3474,7 +3107,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_A_V_X(w, j, V, &v);
+    stage_rrr_A_V_X(m, i, &v);
     stage_rrr_legs_required(m, i, &v);
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -3484,8 +3117,6 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
     /* (R_a) */
     const real rrr_R_a_t = rrr_c_x*v.rrr_q_y - rrr_c_y*v.rrr_q_x;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
     /* (R_t) */
     gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
@@ -3494,15 +3125,15 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     /* (rrr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_w_1_x;
     o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) */
-    o[2*count + k] = rrr_H_a_1_z;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_H_a_1_z;
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[1*w + k] = o[0*count + at];
     H[(NU + 1)*w + k] = o[1*count + at];
@@ -3529,8 +3160,6 @@ INLINE void required_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_y_prr_axes2_x*v.prr_c_in_axes2_x;
     /* (R_a) */
     const real prr_R_a_t = prr_c_x*v.prr_q_y - prr_c_y*v.prr_q_x;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    const real prr_H_a_1_z = v.prr_q_x*v.prr_w_1_y - v.prr_q_y*v.prr_w_1_x;
     /* (R_t) */
     gather(&terms[0*count + k], add, prr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, prr_c_y);  /* R_t_y_of_legs */
@@ -3539,14 +3168,14 @@ INLINE void required_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
     /* (prr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.prr_w_1_x;
     o[1*count + k] = v.prr_w_1_y;
-    /* (prr-H_a_1) */
-    o[2*count + k] = prr_H_a_1_z;
+    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.prr_H_a_1_z;
     o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
 INLINE void required_place_prr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[2*w + k] = o[0*count + at];
     H[(NU + 2)*w + k] = o[1*count + at];
@@ -3559,14 +3188,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 {
     /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
-    const real f_p_x = s[2*w + k];
+    const real f_p_x = s[3*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
-    const real f_p_y = s[3*w + k];
+    const real f_p_y = s[4*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
     /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
-    const real mu_p_z = s[4*w + k];
+    const real mu_p_z = s[5*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
@@ -3576,9 +3205,9 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
+    real s[6] = {0}, sums[3] = {0};
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[5*LEGS(LEGS_OF_prr)] = {0};
@@ -3620,9 +3249,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, verdict *restrict t)
+    real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[5*LANES], sums[3*LANES];
+    real s[6*LANES], sums[3*LANES];
     real o_rpr[4*LANES];
     real o_rrr[5*LANES];
     real o_prr[5*LANES];
@@ -3674,10 +3303,9 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
     size_t count, const real *s, const real *X, real *o)
 {
     values_rpr v;
-    stage_rpr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    stage_rpr_X(m, w, i, j, s, X, &v);
     /* (rpr-q_1) displacement of joint 1 */
-    const real rpr_q_1 = angle(v.inv_rpr_q_2*v.rpr_S_in_turn1_y,
-        v.inv_rpr_q_2*v.rpr_S_in_turn1_x);
+    const real rpr_q_1 = angle(v.rpr_s_1, v.rpr_c_1);
     /* (rpr-q_1) */
     o[0*count + k] = rpr_q_1;
     /* (rpr-q_2) displacement of joint 2 */
@@ -3688,7 +3316,7 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
 }
 
 INLINE void inverse_kinematics_place_rpr(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *q, verdict *t)
+    *o, real *q, status_flags *t)
 {
     q[0*w + k] = o[0*count + at];
     q[1*w + k] = o[1*count + at];
@@ -3700,15 +3328,11 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     size_t count, const real *s, const real *X, real *o)
 {
     values_rrr v;
-    stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    stage_rrr_X(m, w, i, j, s, X, &v);
     /* (rrr-q_1) displacement of joint 1 */
-    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 +
-        v.rrr_Kc_1*v.rrr_root_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
-        v.rrr_Ks_1*v.rrr_root_1));
+    const real rrr_q_1 = angle(v.rrr_s_1, v.rrr_c_1);
     /* (rrr-q_2) displacement of joint 2 */
-    const real rrr_q_2 =
-        angle(-m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1,
-        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x);
+    const real rrr_q_2 = angle(v.rrr_s_2, v.rrr_c_2);
     /* (rrr-q_1) */
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
@@ -3719,7 +3343,7 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
 }
 
 INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *q, verdict *t)
+    *o, real *q, status_flags *t)
 {
     q[2*w + k] = o[0*count + at];
     q[3*w + k] = o[1*count + at];
@@ -3732,22 +3356,21 @@ INLINE void inverse_kinematics_legs_prr(const prepared *m, size_t w, size_t i, s
     size_t count, const real *s, const real *X, real *o)
 {
     values_prr v;
-    stage_prr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (prr-q_2) displacement of joint 2 */
-    const real prr_q_2 =
-        angle(m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*(v.prr_S_x*m->prr_base_frame_xy[i]
-        + v.prr_S_y*m->prr_base_frame_yy[i]),
-        m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*v.prr_q_1_t);
+    stage_prr_X(m, w, i, j, s, X, &v);
     /* (prr-q_1) displacement of joint 1 */
-    o[0*count + k] = v.prr_q_1;
+    const real prr_q_1 = v.prr_S_in_axes0_x - v.prr_q_1_t;
+    /* (prr-q_2) displacement of joint 2 */
+    const real prr_q_2 = angle(v.prr_s_2, v.prr_c_2);
+    /* (prr-q_1) */
+    o[0*count + k] = prr_q_1;
     /* (prr-q_2) */
     o[1*count + k] = prr_q_2;
-    o[3*count + k] = v.prr_q_1 + prr_q_2;
+    o[3*count + k] = prr_q_1 + prr_q_2;
     o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
 }
 
 INLINE void inverse_kinematics_place_prr(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *q, verdict *t)
+    *o, real *q, status_flags *t)
 {
     q[4*w + k] = o[0*count + at];
     q[5*w + k] = o[1*count + at];
@@ -3755,9 +3378,9 @@ INLINE void inverse_kinematics_place_prr(size_t w, size_t k, size_t at, size_t c
     t->total[k] += o[3*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[4*LEGS(LEGS_OF_prr)] = {0};
@@ -3784,9 +3407,9 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_rpr[4*LANES];
     real o_rrr[5*LANES];
     real o_prr[4*LANES];
@@ -3834,28 +3457,18 @@ INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    /* (rpr-S_dot) velocity of the connection point */
-    const real omega_z = V[2*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real rpr_S_dot_x = t_dot_x - omega_z*v.rpr_q_y;
-    const real t_dot_y = V[1*w + j];
-    const real rpr_S_dot_y = t_dot_y + omega_z*v.rpr_q_x;
-    const real rpr_S_dot_in_axes1_x = v.axis_x_rpr_axes1_x*rpr_S_dot_x +
-        v.axis_x_rpr_axes1_y*rpr_S_dot_y;
+    stage_rpr_V_X(m, w, i, j, V, &v);
     /* (rpr-qd_1) rate of joint 1 */
-    const real rpr_qd_1 = v.inv_rpr_q_2*(v.axis_x_rpr_axes1_x*rpr_S_dot_y -
-        v.axis_x_rpr_axes1_y*rpr_S_dot_x);
-    /* (rpr-qd_1) */
-    o[0*count + k] = rpr_qd_1;
+    o[0*count + k] = v.rpr_qd_1;
     /* (rpr-qd_2) rate of joint 2 */
-    o[1*count + k] = rpr_S_dot_in_axes1_x;
-    o[3*count + k] = rpr_qd_1 + rpr_S_dot_in_axes1_x;
+    o[1*count + k] = v.rpr_S_dot_in_axes1_x;
+    o[3*count + k] = v.rpr_qd_1 + v.rpr_S_dot_in_axes1_x;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void joint_rates_place_rpr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *qd, verdict *t)
+    *qd, status_flags *t)
 {
     qd[0*w + k] = o[0*count + at];
     qd[1*w + k] = o[1*count + at];
@@ -3868,35 +3481,19 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    /* (rrr-S_dot) velocity of the connection point */
-    const real omega_z = V[2*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real rrr_S_dot_x = t_dot_x - omega_z*v.rrr_q_y;
-    const real t_dot_y = V[1*w + j];
-    const real rrr_S_dot_y = t_dot_y + omega_z*v.rrr_q_x;
+    stage_rrr_V_X(m, w, i, j, V, &v);
     /* (rrr-qd_1) rate of joint 1 */
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
-    const real rrr_qd_1 = -(axis_x_rrr_axes2_x*rrr_S_dot_x -
-        axis_y_rrr_axes2_x*rrr_S_dot_y)/v.rrr_r_1_in_axes2_y;
+    o[0*count + k] = v.rrr_qd_1;
     /* (rrr-qd_2) rate of joint 2 */
-    const real rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-        axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
-        v.rrr_r_1_in_axes1_y*v.rrr_s_2));
-    /* (rrr-qd_1) */
-    o[0*count + k] = rrr_qd_1;
-    /* (rrr-qd_2) */
-    o[1*count + k] = rrr_qd_2;
-    o[4*count + k] = rrr_qd_1 + rrr_qd_2;
+    o[1*count + k] = v.rrr_qd_2;
+    o[4*count + k] = v.rrr_qd_1 + v.rrr_qd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *qd, verdict *t)
+    *qd, status_flags *t)
 {
     qd[2*w + k] = o[0*count + at];
     qd[3*w + k] = o[1*count + at];
@@ -3910,33 +3507,21 @@ INLINE void joint_rates_legs_prr(const prepared *m, size_t w, size_t i, size_t j
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    /* (prr-S_dot) velocity of the connection point */
-    const real omega_z = V[2*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real prr_S_dot_x = t_dot_x - omega_z*v.prr_q_y;
-    const real t_dot_y = V[1*w + j];
-    const real prr_S_dot_y = t_dot_y + omega_z*v.prr_q_x;
-    /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-    const real prr_v_2_in_axes0_y =
-        -m->inv_prr_size_t[i]*m->prr_branch_1[i]*root(v.prr_disc_1)*m->prr_platform_joint_offset_x[i]*m->prr_platform_joint_offset_x[i];
+    stage_prr_V_X(m, w, i, j, V, &v);
     /* (prr-qd_1) rate of joint 1 */
-    const real prr_qd_1_t = (prr_S_dot_x*m->prr_base_frame_xy[i] +
-        prr_S_dot_y*m->prr_base_frame_yy[i])/prr_v_2_in_axes0_y;
-    const real prr_qd_1 = prr_S_dot_x*m->prr_base_frame_xx[i] +
-        prr_S_dot_y*m->prr_base_frame_yx[i] +
-        m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*m->prr_platform_joint_offset_x[i]*prr_qd_1_t*(v.prr_S_x*m->prr_base_frame_xy[i]
-        + v.prr_S_y*m->prr_base_frame_yy[i]);
+    const real prr_qd_1 = v.prr_S_dot_x*m->prr_base_frame_xx[i] +
+        v.prr_S_dot_y*m->prr_base_frame_yx[i] - v.prr_qd_1_t*v.prr_v_2_in_axes0_x;
     /* (prr-qd_1) */
     o[0*count + k] = prr_qd_1;
     /* (prr-qd_2) rate of joint 2 */
-    o[1*count + k] = prr_qd_1_t;
-    o[4*count + k] = prr_qd_1 + prr_qd_1_t;
+    o[1*count + k] = v.prr_qd_1_t;
+    o[4*count + k] = prr_qd_1 + v.prr_qd_1_t;
     o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
-    o[3*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
+    o[3*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
 INLINE void joint_rates_place_prr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *qd, verdict *t)
+    *qd, status_flags *t)
 {
     qd[4*w + k] = o[0*count + at];
     qd[5*w + k] = o[1*count + at];
@@ -3945,9 +3530,10 @@ INLINE void joint_rates_place_prr(size_t w, size_t k, size_t at, size_t count, c
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
@@ -3974,9 +3560,9 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_rpr[4*LANES];
     real o_rrr[5*LANES];
     real o_prr[5*LANES];
@@ -4025,26 +3611,21 @@ INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, 
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_A_X(w, j, A, &v);
-    stage_rpr_V_X(w, j, V, &v);
-    stage_rpr_A_V_X(w, j, V, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_A_V_X(&v);
     /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rpr_rel_in_axes1_x = v.axis_x_rpr_axes1_x*v.rpr_S_ddot_x +
-        v.axis_x_rpr_axes1_y*v.rpr_S_ddot_y + v.rpr_q_2*v.rpr_qd_1*v.rpr_qd_1;
-    const real rpr_rel_in_axes1_y = v.axis_x_rpr_axes1_x*v.rpr_S_ddot_y -
-        v.axis_x_rpr_axes1_y*v.rpr_S_ddot_x - 2*v.rpr_S_dot_in_axes1_x*v.rpr_qd_1;
+    const real rpr_rel_in_axes1_x = v.rpr_S_ddot_in_axes1_x - v.rpr_W_1_in_axes1_xx*v.rpr_q_2;
     /* (rpr-qdd_1) acceleration of joint 1 */
-    const real rpr_qdd_1 = v.inv_rpr_q_2*rpr_rel_in_axes1_y;
-    /* (rpr-qdd_1) */
-    o[0*count + k] = rpr_qdd_1;
+    o[0*count + k] = v.rpr_qdd_1;
     /* (rpr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = rpr_rel_in_axes1_x;
-    o[3*count + k] = rpr_qdd_1 + rpr_rel_in_axes1_x;
+    o[3*count + k] = v.rpr_qdd_1 + rpr_rel_in_axes1_x;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void joint_accelerations_place_rpr(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *qdd, verdict *t)
+    *o, real *qdd, status_flags *t)
 {
     qdd[0*w + k] = o[0*count + at];
     qdd[1*w + k] = o[1*count + at];
@@ -4059,45 +3640,19 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_A_V_X(w, j, V, &v);
-    /* (rrr-qd_1) rate of joint 1 */
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
-    const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
-        axis_y_rrr_axes2_x*v.rrr_S_dot_y);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-    /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
-        axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
-    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
-    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x -
-        axis_y_rrr_axes2_x*v.rrr_S_ddot_y - rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
-        axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    stage_rrr_A_V_X(m, i, &v);
     /* (rrr-qdd_1) acceleration of joint 1 */
-    const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*v.rrr_w_1_in_axes2_x;
+    o[0*count + k] = -v.rrr_qdd_1_t;
     /* (rrr-qdd_2) acceleration of joint 2 */
-    const real rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
-        rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
-    /* (rrr-qdd_1) */
-    o[0*count + k] = -rrr_qdd_1_t;
-    /* (rrr-qdd_2) */
-    o[1*count + k] = rrr_qdd_2;
-    o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
+    o[1*count + k] = v.rrr_qdd_2;
+    o[4*count + k] = v.rrr_qdd_1_t + v.rrr_qdd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *qdd, verdict *t)
+    *o, real *qdd, status_flags *t)
 {
     qdd[2*w + k] = o[0*count + at];
     qdd[3*w + k] = o[1*count + at];
@@ -4114,30 +3669,17 @@ INLINE void joint_accelerations_legs_prr(const prepared *m, size_t w, size_t i, 
     stage_prr_A_X(w, j, A, &v);
     stage_prr_V_X(m, w, i, j, V, &v);
     stage_prr_A_V_X(w, j, V, &v);
-    /* (prr-qd_2) rate of joint 2 */
-    const real prr_qd_2_t = -1/v.prr_v_2_in_axes0_y;
-    const real prr_qd_2 = -prr_qd_2_t*(v.prr_S_dot_x*m->prr_base_frame_xy[i] +
-        v.prr_S_dot_y*m->prr_base_frame_yy[i]);
-    /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-    const real prr_rel_in_axes2_x = v.axis_x_prr_axes2_x*v.prr_S_ddot_x -
-        v.axis_y_prr_axes2_x*v.prr_S_ddot_y +
-        m->prr_platform_joint_offset_x[i]*prr_qd_2*prr_qd_2;
     /* (prr-qdd_1) acceleration of joint 1 */
-    const real prr_qdd_1_t = prr_qd_2_t*(v.prr_S_ddot_in_axes2_y*v.prr_c_2 +
-        prr_rel_in_axes2_x*v.prr_s_2);
-    const real prr_qdd_1 = v.prr_c_2*prr_rel_in_axes2_x - v.prr_S_ddot_in_axes2_y*v.prr_s_2 -
-        m->prr_platform_joint_offset_x[i]*prr_qdd_1_t*v.prr_s_2;
-    /* (prr-qdd_1) */
-    o[0*count + k] = prr_qdd_1;
+    o[0*count + k] = v.prr_qdd_1;
     /* (prr-qdd_2) acceleration of joint 2 */
-    o[1*count + k] = -prr_qdd_1_t;
-    o[4*count + k] = prr_qdd_1 + prr_qdd_1_t;
+    o[1*count + k] = -v.prr_qdd_1_t;
+    o[4*count + k] = v.prr_qdd_1 + v.prr_qdd_1_t;
     o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
 INLINE void joint_accelerations_place_prr(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *qdd, verdict *t)
+    *o, real *qdd, status_flags *t)
 {
     qdd[4*w + k] = o[0*count + at];
     qdd[5*w + k] = o[1*count + at];
@@ -4147,9 +3689,9 @@ INLINE void joint_accelerations_place_prr(size_t w, size_t k, size_t at, size_t 
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
@@ -4176,9 +3718,9 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[2*LANES];
+    real s[3*LANES];
     real o_rpr[4*LANES];
     real o_rrr[5*LANES];
     real o_prr[5*LANES];
@@ -4226,13 +3768,12 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_A_X(w, j, A, &v);
-    stage_rpr_V_X(w, j, V, &v);
-    stage_rpr_A_V_X(w, j, V, &v);
+    stage_rpr_V_X(m, w, i, j, V, &v);
+    stage_rpr_A_V_X(&v);
     stage_rpr_legs_required(m, i, &v);
     /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
-    const real rpr_c_true_in_axes1_x = m->rpr_h_2_in_spec1_y[i]*v.rpr_qdd_1 -
-        v.rpr_acc_2_in_axes1_x*m->rpr_link2_mass[i] -
-        v.rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i];
+    const real rpr_c_true_in_axes1_x = -v.rpr_acc_2_in_axes1_x*m->rpr_link2_mass[i] -
+        v.rpr_phi_2_in_axes1_x;
     const real rpr_c_true_in_axes1_y = v.rpr_c_in_axes1_y -
         v.rpr_acc_2_in_axes1_y*m->rpr_link2_mass[i];
     const real rpr_c_true_x = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
@@ -4250,7 +3791,7 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_rpr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     leg_force[0*w + k] = o[0*count + at];
     leg_force[1*w + k] = o[1*count + at];
@@ -4266,7 +3807,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_A_V_X(w, j, V, &v);
+    stage_rrr_A_V_X(m, i, &v);
     stage_rrr_legs_required(m, i, &v);
     /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
     const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
@@ -4289,7 +3830,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     leg_force[3*w + k] = o[0*count + at];
     leg_force[(3 + 1)*w + k] = o[1*count + at];
@@ -4328,7 +3869,7 @@ INLINE void legs_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_prr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     leg_force[6*w + k] = o[0*count + at];
     leg_force[(6 + 1)*w + k] = o[1*count + at];
@@ -4339,9 +3880,9 @@ INLINE void legs_place_prr(size_t w, size_t k, size_t at, size_t count, const re
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
-    real s[2] = {0};
+    real s[3] = {0};
     real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
@@ -4384,36 +3925,29 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
-    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xx*m->h_star_in_platform_x -
-        v->R_yx*m->h_star_in_platform_y) + m->gravity_y*(m->m_star*t_y +
-        v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x);
-    s[2*w + k] = potential_t;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
+        m->gravity_y*(m->m_star*t_y + v->h_star_y);
+    s[3*w + k] = potential_t;
 }
 
 INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
     values_rpr v;
-    stage_rpr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
-    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
+    stage_rpr_X(m, w, i, j, s, X, &v);
     /* (potential) */
-    const real rpr_potential_t_3 = (m->rpr_acc_2_t[i]*rpr_c_1 +
-        m->rpr_acc_2_t_2[i]*rpr_s_1)*(m->rpr_h_1_in_spec1_x[i] + m->rpr_h_2_in_spec1_x[i] +
-        m->rpr_link1_mass[i]*(rpr_c_1*m->rpr_potential_t[i] +
-        m->rpr_potential_t_2[i]*rpr_s_1)) + (m->rpr_acc_2_t_2[i]*rpr_c_1 -
-        m->rpr_acc_2_t[i]*rpr_s_1)*(m->rpr_h_1_in_spec1_y[i] + m->rpr_h_2_in_spec1_y[i] +
-        m->rpr_link1_mass[i]*(rpr_c_1*m->rpr_potential_t_2[i] -
-        m->rpr_potential_t[i]*rpr_s_1));
+    const real rpr_potential_t_3 = v.rpr_g_in_axes1_x*(m->rpr_h_1_in_spec1_x[i] +
+        m->rpr_h_2_in_spec1_x[i] + m->rpr_link1_mass[i]*(v.rpr_c_1*m->rpr_potential_t[i] +
+        m->rpr_potential_t_2[i]*v.rpr_s_1)) + v.rpr_g_in_axes1_y*(m->rpr_h_1_in_spec1_y[i] +
+        m->rpr_h_2_in_spec1_y[i] + m->rpr_link1_mass[i]*(v.rpr_c_1*m->rpr_potential_t_2[i] -
+        m->rpr_potential_t[i]*v.rpr_s_1));
     /* (potential) */
     gather(&terms[0*count + k], add, rpr_potential_t_3);  /* potential_t_2 */
     o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
-INLINE void potential_place_rpr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -4422,33 +3956,22 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
     values_rrr v;
-    stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
-    /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 + v.rrr_Kc_1*v.rrr_root_1);
-    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real rrr_c_2 =
-        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x;
-    /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rrr_s_2 =
-        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1;
+    stage_rrr_X(m, w, i, j, s, X, &v);
     /* (potential) */
-    const real rrr_potential_t_3 = (rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_x[i] +
-        rrr_c_2*m->rrr_h_2_in_spec2_x[i] + m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t[i]
-        + m->rrr_potential_t_2[i]*rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*rrr_s_2) +
-        (rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_y[i] +
-        rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
-        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] - m->rrr_potential_t[i]*rrr_s_1)
-        + m->rrr_h_2_in_spec2_x[i]*rrr_s_2);
+    const real rrr_potential_t_3 = v.rrr_g_in_axes1_x*(m->rrr_h_1_in_spec1_x[i] +
+        v.rrr_c_2*m->rrr_h_2_in_spec2_x[i] +
+        m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
+        m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
+        v.rrr_g_in_axes1_y*(m->rrr_h_1_in_spec1_y[i] + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
+        m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_3 */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -4458,25 +3981,21 @@ INLINE void potential_legs_prr(const prepared *m, size_t w, size_t i, size_t j, 
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
     values_prr v;
-    stage_prr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real prr_c_2 = m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*v.prr_q_1_t;
-    /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real prr_s_2 =
-        m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*(v.prr_S_x*m->prr_base_frame_xy[i]
-        + v.prr_S_y*m->prr_base_frame_yy[i]);
+    stage_prr_X(m, w, i, j, s, X, &v);
+    /* (prr-q_1) displacement of joint 1 */
+    const real prr_q_1 = v.prr_S_in_axes0_x - v.prr_q_1_t;
     /* (potential) */
     const real prr_potential_t_2 = m->prr_g_in_axes0_y[i]*(m->prr_h_1_in_spec0_y[i] +
-        m->prr_potential_t[i] + m->prr_h_2_in_spec2_x[i]*prr_s_2 +
-        prr_c_2*m->prr_h_2_in_spec2_y[i]) + m->prr_g_in_axes0_x[i]*(m->prr_h_1_in_spec0_x[i] -
-        m->prr_h_2_in_spec2_y[i]*prr_s_2 + prr_c_2*m->prr_h_2_in_spec2_x[i] +
-        m->prr_link1_mass[i]*(m->prr_b_in_axes0_x[i] + v.prr_q_1));
+        m->prr_potential_t[i] + m->prr_h_2_in_spec2_x[i]*v.prr_s_2 +
+        v.prr_c_2*m->prr_h_2_in_spec2_y[i]) + m->prr_g_in_axes0_x[i]*(m->prr_h_1_in_spec0_x[i]
+        - m->prr_h_2_in_spec2_y[i]*v.prr_s_2 + v.prr_c_2*m->prr_h_2_in_spec2_x[i] +
+        m->prr_link1_mass[i]*(m->prr_b_in_axes0_x[i] + prr_q_1));
     /* (potential) */
     gather(&terms[2*count + k], add, -prr_potential_t_2);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
 }
 
-INLINE void potential_place_prr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_prr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
 }
@@ -4485,7 +4004,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 {
     /* (potential) */
     const real potential_of_legs = sums[2*w + k];
-    const real potential_t = s[2*w + k];
+    const real potential_t = s[3*w + k];
     const real potential_t_2 = sums[0*w + k];
     const real potential_t_3 = sums[1*w + k];
     const real potential_ = potential_of_legs - potential_t - potential_t_2 - potential_t_3;
@@ -4493,9 +4012,9 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[3] = {0}, sums[3] = {0};
+    real s[4] = {0}, sums[3] = {0};
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[LEGS(LEGS_OF_prr)] = {0};
@@ -4538,7 +4057,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4559,8 +4078,6 @@ INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rpr_pivot_size_2 = magnitude(v.rpr_q_2);
     const real rpr_least_pivots = lesser(R(1.6129032258064515)*root(rpr_pivot_size),
         R(1.6129032258064517)*rpr_pivot_size_2);
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    const real rpr_H_a_2_z = v.rpr_q_x*v.rpr_w_2_y - v.rpr_q_y*v.rpr_w_2_x;
     /* (spread) rms distance of the platform points from their centroid */
     const real rpr_spread_t = m->b_c_in_platform_x - m->rpr_platform_point_x[i];
     const real rpr_spread_t_2 = m->b_c_in_platform_y - m->rpr_platform_point_y[i];
@@ -4568,19 +4085,20 @@ INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
     /* (spread) */
     gather(&terms[0*count + k], add, rpr_spread_t_3);  /* spread_rpr */
     /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.rpr_w_2_x;
-    o[1*count + k] = v.rpr_w_2_y;
-    /* (rpr-H_a_2) */
-    o[2*count + k] = rpr_H_a_2_z;
+    o[0*count + k] = v.axis_x_rpr_axes1_x;
+    o[1*count + k] = v.axis_x_rpr_axes1_y;
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rpr_H_a_2_z;
     /* (rpr-G) */
     o[3*count + k] = rpr_least_pivots;
-    o[5*count + k] = (v.rpr_w_2_x + v.rpr_w_2_y) + (rpr_H_a_2_z + rpr_least_pivots);
+    o[5*count + k] = (v.axis_x_rpr_axes1_x + v.axis_x_rpr_axes1_y) + (v.rpr_H_a_2_z +
+        rpr_least_pivots);
     o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void condition_place_rpr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, real *pivots, verdict *t)
+    *H, real *pivots, status_flags *t)
 {
     H[0*w + k] = o[0*count + at];
     H[NU*w + k] = o[1*count + at];
@@ -4595,7 +4113,6 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    stage_rrr_H_condition(m, i, &v);
     /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
@@ -4624,7 +4141,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, real *pivots, real *reach, verdict *t)
+    *H, real *pivots, real *reach, status_flags *t)
 {
     H[1*w + k] = o[0*count + at];
     H[(NU + 1)*w + k] = o[1*count + at];
@@ -4641,7 +4158,6 @@ INLINE void condition_legs_prr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    stage_prr_H_condition(m, i, &v);
     /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real prr_pivot_size = magnitude(v.prr_v_2_in_axes0_y);
@@ -4667,7 +4183,7 @@ INLINE void condition_legs_prr(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void condition_place_prr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, real *pivots, real *reach, verdict *t)
+    *H, real *pivots, real *reach, status_flags *t)
 {
     H[2*w + k] = o[0*count + at];
     H[(NU + 2)*w + k] = o[1*count + at];
@@ -4679,7 +4195,7 @@ INLINE void condition_place_prr(size_t w, size_t k, size_t at, size_t count, con
     t->total[k] += o[7*count + at];
 }
 
-INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, verdict *t)
+INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_prr = sums[2*w + k];
@@ -4693,9 +4209,9 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
-    real s[2] = {0}, sums[3] = {0};
+    real s[3] = {0}, sums[3] = {0};
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[6*LEGS(LEGS_OF_rpr)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
     real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[8*LEGS(LEGS_OF_prr)] = {0};
@@ -4740,196 +4256,179 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int planar_mixed_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int planar_mixed_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int planar_mixed_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int planar_mixed_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int planar_mixed_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int planar_mixed_joint_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int planar_mixed_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -4988,14 +4487,9 @@ int planar_mixed_inverse_dynamics(const prepared *m, const real *X, const real *
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -5010,7 +4504,7 @@ int planar_mixed_inverse_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    return settled(&why, NU, tau_out);
+    return final_status(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -5018,7 +4512,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -5029,8 +4523,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_3(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
 }
 
 static const size_t order_A[] = {0, 1, 2};
@@ -5042,14 +4536,9 @@ int planar_mixed_forward_dynamics(const prepared *m, const real *X, const real *
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
         subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -5068,7 +4557,7 @@ int planar_mixed_forward_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -5077,7 +4566,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
         A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -5092,8 +4581,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_3(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int planar_mixed_complete_acceleration(const prepared *m, const real *X, const real *V, const real
@@ -5103,13 +4592,11 @@ int planar_mixed_complete_acceleration(const prepared *m, const real *X, const r
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int planar_mixed_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -5117,49 +4604,27 @@ int planar_mixed_leg_reactions(const prepared *m, const real *X, const real *V, 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
-        unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0},
-        work[NV*PADDED(NV)];
-    verdict why;
+    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, &why);
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - wrench[i];
-    }
-    eliminate_3(1, NV, order_tau, sizes_tau, H, subtract_1, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NV, 1, H, work);
-        solve_apart(NV, subtract_1, work, solve_1, why.singular);
-        check(NV, 1, solve_1, why.overflow);
-    }
+    flag_status(planar_mixed_inverse_dynamics(m, X, V, A, wrench, solve_1), &why);
     legs_run(m, X, V, A, leg_force, actuator, &why);
     for (size_t i = 0; i < NL*NL; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
-    check(NL*NL, 1, forces, why.overflow);
-    copy(NL*NL, forces, forces_out);
-    return settled(&why, NL*NL, forces_out);
+    return finished(NL*NL, forces, forces_out, &why);
 }
 
 int planar_mixed_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -5168,8 +4633,8 @@ int planar_mixed_energy(const prepared *m, const real *X, const real *V, real *k
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int planar_mixed_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -5179,9 +4644,9 @@ int planar_mixed_condition(const prepared *m, const real *X, real *sigma_out, re
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
         divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -5201,8 +4666,8 @@ int planar_mixed_condition(const prepared *m, const real *X, real *sigma_out, re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int planar_mixed_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -5212,13 +4677,12 @@ int planar_mixed_manipulability(const prepared *m, const real *X, real *measure_
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
         = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -5236,8 +4700,8 @@ int planar_mixed_manipulability(const prepared *m, const real *X, real *measure_
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int planar_mixed_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -5247,13 +4711,12 @@ int planar_mixed_singularity_distance(const prepared *m, const real *X, real *ac
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
         = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -5271,57 +4734,53 @@ int planar_mixed_singularity_distance(const prepared *m, const real *X, real *ac
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    static const size_t places_gap[] = {1};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_1[3] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
-    verdict why;
+    static const size_t places_residual[] = {1};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_1[3] = {0}, subtract_1[NU] = {0}, residual[NU] =
+        {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(3, 1, planar_mixed_ACTUATED, q, q_of_inverse_kinematics_from_1);
     for (size_t i = 0; i < NU; ++i) {
         subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_1[i];
     }
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = subtract_1[i];
+        residual[i] = subtract_1[i];
     }
-    wrap_turns(1, 1, places_gap, gap);
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    wrap_turns(1, 1, places_residual, residual);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -5333,21 +4792,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -5361,17 +4820,11 @@ int planar_mixed_forward_kinematics(const prepared *m, const real *q_actuated, c
     real *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int planar_mixed_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5380,211 +4833,155 @@ int planar_mixed_dissipation(const prepared *m, const real *X, const real *V, re
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int planar_mixed_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int planar_mixed_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int planar_mixed_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int planar_mixed_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, planar_mixed_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int planar_mixed_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, planar_mixed_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int planar_mixed_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, planar_mixed_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int planar_mixed_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int planar_mixed_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_2 = X + 2;
     rotation_of_angle(X_from_2, R);
-    check(4, 1, R, why.overflow);
-    copy(4, R, R_out);
-    return settled(&why, 4, R_out);
+    return finished(4, R, R_out, &why);
 }
 
 int planar_mixed_pose(const real *t, const real *R, real *X_out)
 {
     real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 2) + total(R, 4);
-    if (!is_finite(total_in)) {
-        check(2, 1, t, why.invalid);
-        check(4, 1, R, why.invalid);
-    }
+    check_two(2, t, 4, R, why.invalid);
     angle_of_rotation(R, angle_of_rotation_1);
     beside(1, 2, 1, t, angle_of_rotation_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int planar_mixed_X_dot(const real *X, const real *V, real *X_dot_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const X_dot = V;
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int planar_mixed_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
+    check_two(NQ, X, NV, step, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int planar_mixed_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] = {0}, step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
+    check_two(NQ, X0, NQ, X1, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -5592,39 +4989,23 @@ int planar_mixed_difference(const real *X0, const real *X1, real *step_out)
         step[i] = subtract_1[i];
     }
     wrap_turns(1, 1, places_step, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int planar_mixed_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    static const size_t places_wrap_turns_1[] = {2};
-    real subtract_1[NQ] = {0}, wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
-    verdict why;
+    real wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    for (size_t i = 0; i < NQ; ++i) {
-        subtract_1[i] = X1[i] - X0[i];
-    }
-    for (size_t i = 0; i < NQ; ++i) {
-        wrap_turns_1[i] = subtract_1[i];
-    }
-    wrap_turns(1, 1, places_wrap_turns_1, wrap_turns_1);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(planar_mixed_difference(X0, X1, wrap_turns_1), &why);
     for (size_t i = 0; i < NQ; ++i) {
         scale_1[i] = wrap_turns_1[i]*s[i%(1)];
     }
     for (size_t i = 0; i < NQ; ++i) {
         X[i] = X0[i] + scale_1[i];
     }
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

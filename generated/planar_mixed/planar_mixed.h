@@ -194,7 +194,7 @@ int planar_mixed_Z(const planar_mixed_model *model, const planar_mixed_real *X, 
 size_t planar_mixed_Z_batch(const planar_mixed_model *model, size_t n, const planar_mixed_real *X,
     const planar_mixed_real *V, planar_mixed_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 92 mul, 51 add, 4 div, 3 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 93 mul, 51 add, 4 div, 3 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int planar_mixed_H(const planar_mixed_model *model, const planar_mixed_real *X, planar_mixed_real
     *H);
@@ -208,7 +208,7 @@ int planar_mixed_inverse_kinematics(const planar_mixed_model *model, const plana
 size_t planar_mixed_inverse_kinematics_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, planar_mixed_real *q, int *status);
 
-/* Rates of all joints. 98 mul, 57 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 100 mul, 57 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int planar_mixed_joint_rates(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, planar_mixed_real *rates);
@@ -282,7 +282,7 @@ size_t planar_mixed_energy_batch(const planar_mixed_model *model, size_t n, cons
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 106 mul, 67 add, 4 div, 6 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   legs. 107 mul, 67 add, 4 div, 6 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
    (3), legs (3). */
 int planar_mixed_condition(const planar_mixed_model *model, const planar_mixed_real *X,
     planar_mixed_real *sigma, planar_mixed_real *legs);
@@ -290,14 +290,14 @@ size_t planar_mixed_condition_batch(const planar_mixed_model *model, size_t n, c
     planar_mixed_real *X, planar_mixed_real *sigma, planar_mixed_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 106 mul, 67 add, 4 div, 6 sqrt, 0 trig; the singular values
+   the least over the largest of them. 107 mul, 67 add, 4 div, 6 sqrt, 0 trig; the singular values
    apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int planar_mixed_manipulability(const planar_mixed_model *model, const planar_mixed_real *X,
     planar_mixed_real *measure, planar_mixed_real *isotropy);
 size_t planar_mixed_manipulability_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, planar_mixed_real *measure, planar_mixed_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 106
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 107
    mul, 67 add, 4 div, 6 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
    legs (1). */
 int planar_mixed_singularity_distance(const planar_mixed_model *model, const planar_mixed_real *X,
@@ -348,8 +348,8 @@ int planar_mixed_actuator_positions(const planar_mixed_model *model, const plana
 size_t planar_mixed_actuator_positions_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, planar_mixed_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 98 mul, 57 add, 4 div, 3 sqrt, 0 trig. In: X
-   (NQ), V (NV). Out: rates (NU). */
+/* Rates of the actuated joints, in the order of tau. 100 mul, 57 add, 4 div, 3 sqrt, 0 trig. In:
+   X (NQ), V (NV). Out: rates (NU). */
 int planar_mixed_actuator_rates(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, planar_mixed_real *rates);
 size_t planar_mixed_actuator_rates_batch(const planar_mixed_model *model, size_t n, const

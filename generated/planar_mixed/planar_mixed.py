@@ -1793,11 +1793,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -2020,8 +2020,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -2029,7 +2029,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -2037,11 +2037,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -2123,9 +2123,12 @@ def _run_dynamics(m, X, V):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
+    # (f_p) inertia force of the platform less its weight
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = -W_p_xx*h_star_y
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = W_p_xx*h_star_x - Z_p_t
-    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
+    Z_p_x = f_p_t - Z_p_t
+    Z_p_y = -Z_p_t_2 - f_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     (
@@ -2149,8 +2152,9 @@ def _run_dynamics(m, X, V):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-S_dot) velocity of the connection point
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         rpr_S_dot_t = omega_z*rpr_q_y
@@ -2166,27 +2170,31 @@ def _run_dynamics(m, X, V):
         rpr_u_1_t = omega_z*rpr_S_dot_t_2
         rpr_u_1_y = -omega_z*rpr_S_dot_t
         rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y + axis_x_rpr_axes1_y*rpr_u_1_t
+        # (rpr-bias) acceleration of the connection point at zero joint accelerations
+        rpr_bias_in_axes1_y = 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
+        rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1_o) remainder of: acceleration of joint 1
         rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
         # (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
-        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
+        rpr_g_in_axes1_x_2 = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y_2 = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_o_in_axes1_x = (
-        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
+        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x_2 - axis_x_rpr_axes1_x*rpr_u_1_t
         )
-        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
+        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y_2
+        # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_o_in_axes1_x = (
-        rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1_o
-        )
+        rpr_phi_2_o_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1_o
         # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
         rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
+            rpr_g_in_axes1_x_2*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
+            rpr_g_in_axes1_y_2*rpr_h_1_in_spec1_x
         )
+        # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
         # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rpr_d_c_in_axes1_xy = inv_rpr_q_2*rpr_h_2_in_spec1_y
         rpr_d_c_in_axes1_yy = (
@@ -2195,8 +2203,7 @@ def _run_dynamics(m, X, V):
         )
         # (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rpr_c_o_in_axes1_y = (
-        -inv_rpr_q_2*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
-            rpr_h_2_in_spec1_x*rpr_qdd_1_o
+        rpr_c_t - inv_rpr_q_2*rpr_mu_1_o_in_axes1_z - rpr_h_2_in_spec1_x*rpr_qdd_1_o
         )
         # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
         rpr_Q_t = 0.5*rpr_d_c_in_axes1_yy
@@ -2314,13 +2321,15 @@ def _run_dynamics(m, X, V):
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -2329,12 +2338,13 @@ def _run_dynamics(m, X, V):
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
@@ -2342,13 +2352,12 @@ def _run_dynamics(m, X, V):
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_in_axes2_x = (
-        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_o_in_axes2_y = (
-        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
@@ -2359,12 +2368,12 @@ def _run_dynamics(m, X, V):
         rrr_d_Gamma_2_in_axes2_x = (
         rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = -rrr_mu_1_t_3 - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
@@ -2373,6 +2382,9 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
         rrr_d_phi_2_t - rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
@@ -2380,12 +2392,11 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_Q_t = (
@@ -2455,8 +2466,10 @@ def _run_dynamics(m, X, V):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
@@ -2482,17 +2495,19 @@ def _run_dynamics(m, X, V):
         # (prr-w_2) reciprocal vector 2
         prr_w_2_t = prr_s_2*prr_w_1_t
         prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2 = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-qd_1) rate of joint 1
+        prr_qd_1_t = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
-        prr_W_2_t = prr_qd_2*prr_qd_2
+        prr_W_2_t = prr_qd_1_t*prr_qd_1_t
         # (prr-u_1) centripetal acceleration of the connection point
-        prr_u_1_x = -omega_z*prr_S_dot_t_2
-        prr_u_1_t = omega_z*prr_S_dot_t
-        prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x + axis_y_prr_axes2_x*prr_u_1_t
-        prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x - axis_x_prr_axes2_x*prr_u_1_t
+        prr_u_1_x = W_p_xx*prr_q_x
+        prr_u_1_y = W_p_xx*prr_q_y
+        prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x - axis_y_prr_axes2_x*prr_u_1_y
+        prr_u_1_in_axes2_y = axis_x_prr_axes2_x*prr_u_1_y + axis_y_prr_axes2_x*prr_u_1_x
+        # (prr-bias) acceleration of the connection point at zero joint accelerations
+        prr_bias_t = prr_platform_joint_offset_x*prr_qd_1_t*prr_qd_1_t
         # (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        prr_rel_o_in_axes2_x = prr_bias_t + prr_u_1_in_axes2_x
         # (prr-B_2_o) remainder of the acceleration tensor of link 2
         prr_B_2_o_in_axes2_xy = (
         prr_w_1_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
@@ -2504,13 +2519,12 @@ def _run_dynamics(m, X, V):
         )
         # (prr-f_1_o) remainder of: inertia force of link 1 less its weight
         prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass
+        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+        prr_g_in_axes2_x = prr_c_2*prr_g_in_axes0_x + prr_g_in_axes0_y*prr_s_2
+        prr_g_in_axes2_y = prr_c_2*prr_g_in_axes0_y - prr_g_in_axes0_x*prr_s_2
         # (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        prr_acc_2_o_in_axes2_x = (
-        prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
-        )
-        prr_acc_2_o_in_axes2_y = (
-        prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
-        )
+        prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - prr_g_in_axes2_x
+        prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y - prr_g_in_axes2_y
         # (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prr_mu_2_o_in_axes2_z = (
         prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
@@ -2523,6 +2537,9 @@ def _run_dynamics(m, X, V):
         # (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
         prr_d_Gamma_1_t = prr_link1_mass*prr_v_2_in_axes0_x*prr_w_1_t
         prr_d_Gamma_1_in_axes2_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
+        # (prr-c) leg force on the platform without actuation and without the mass at the connection point
+        prr_c_t = prr_W_2_t*prr_h_2_in_spec2_x
+        prr_c_t_2 = prr_W_2_t*prr_h_2_in_spec2_y
         # (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         prr_d_c_in_axes2_xx = (
         prr_d_Gamma_2_in_axes2_x*prr_w_2_t - prr_h_2_in_spec2_y*prr_w_2_t -
@@ -2535,12 +2552,12 @@ def _run_dynamics(m, X, V):
         # (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prr_c_o_t = prr_w_1_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
         prr_c_o_in_axes2_x = (
-        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
-            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x
+        prr_c_t + prr_c_o_t*prr_s_2 - prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y -
+            prr_c_2*prr_f_1_o_in_axes0_x
         )
         prr_c_o_in_axes2_y = (
-        prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y +
-            prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2
+        prr_c_t_2 + prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x + prr_c_2*prr_c_o_t +
+            prr_f_1_o_in_axes0_x*prr_s_2
         )
         # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
         prr_Q_t = (
@@ -2656,24 +2673,24 @@ def _run_M(m, X):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-w_1) reciprocal vector 1
-        rpr_w_1_in_axes1_y = 1.0/rpr_q_2
-        # (rpr-w_2) reciprocal vector 2
-        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
-        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
+        axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_d_c_in_axes1_xy = rpr_h_2_in_spec1_y*rpr_w_1_in_axes1_y
+        rpr_d_c_in_axes1_xy = inv_rpr_q_2*rpr_h_2_in_spec1_y
         rpr_d_c_in_axes1_yy = (
-        -rpr_h_2_in_spec1_x*rpr_w_1_in_axes1_y - rpr_w_1_in_axes1_y*(rpr_h_2_in_spec1_x +
-            rpr_J_group_1_in_axes1_zz*rpr_w_1_in_axes1_y)
+        -inv_rpr_q_2*rpr_h_2_in_spec1_x - inv_rpr_q_2*(rpr_h_2_in_spec1_x +
+            inv_rpr_q_2*rpr_J_group_1_in_axes1_zz)
         )
         # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
         rpr_Q_t = 0.5*rpr_d_c_in_axes1_yy
-        rpr_Q_t_2 = rpr_Q_t*rpr_w_2_y - rpr_d_c_in_axes1_xy*rpr_w_2_x
-        rpr_Q_t_3 = rpr_Q_t*rpr_w_2_x + rpr_d_c_in_axes1_xy*rpr_w_2_y
-        rpr_Q_xx = -2.0*rpr_Q_t_2*rpr_w_2_y
-        rpr_Q_xy = rpr_Q_t_2*rpr_w_2_x + rpr_Q_t_3*rpr_w_2_y
-        rpr_Q_yy = -2.0*rpr_Q_t_3*rpr_w_2_x
+        rpr_Q_t_2 = axis_x_rpr_axes1_y*rpr_Q_t - axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy
+        rpr_Q_t_3 = axis_x_rpr_axes1_x*rpr_Q_t + axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy
+        rpr_Q_xx = -2.0*axis_x_rpr_axes1_y*rpr_Q_t_2
+        rpr_Q_xy = axis_x_rpr_axes1_x*rpr_Q_t_2 + axis_x_rpr_axes1_y*rpr_Q_t_3
+        rpr_Q_yy = -2.0*axis_x_rpr_axes1_x*rpr_Q_t_3
         # (M_ta) coupling block of M
         rpr_M_ta_t = rpr_Q_xy*rpr_q_x - rpr_Q_xx*rpr_q_y
         rpr_M_ta_t_2 = rpr_Q_yy*rpr_q_x - rpr_Q_xy*rpr_q_y
@@ -2740,6 +2757,10 @@ def _run_M(m, X):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
@@ -2758,21 +2779,17 @@ def _run_M(m, X):
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx
-        axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx
-        rrr_Q_t_3 = (
+        rrr_Q_t = (
         rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) - rrr_d_c_in_axes2_yy -
             rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
             rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
         )
-        rrr_Q_t_4 = 0.5*rrr_Q_t_3
-        rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_6
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
         # (M_ta) coupling block of M
         rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
         rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
@@ -2809,8 +2826,10 @@ def _run_M(m, X):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
@@ -2820,9 +2839,12 @@ def _run_M(m, X):
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
         prr_w_1_t = -1.0/prr_v_2_in_axes0_y
         prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
         prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
         # (prr-w_2) reciprocal vector 2
         prr_w_2_t = prr_s_2*prr_w_1_t
         prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t
@@ -2843,10 +2865,8 @@ def _run_M(m, X):
             prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x
         )
         # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
-        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
         prr_Q_t = (
-        prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*(prr_c_2*prr_w_1_t_2 - prr_s_2) +
+        prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_y +
             prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y + prr_h_2_in_spec2_x*prr_w_2_in_axes2_y
         )
         prr_Q_t_2 = 0.5*prr_Q_t
@@ -2923,9 +2943,12 @@ def _run_Z(m, X, V):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
+    # (f_p) inertia force of the platform less its weight
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = -W_p_xx*h_star_y
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = W_p_xx*h_star_x - Z_p_t
-    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
+    Z_p_x = f_p_t - Z_p_t
+    Z_p_y = -Z_p_t_2 - f_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     Z_t_rpr_x, Z_t_rpr_y, Z_a_rpr_z = [0.0] * 3
@@ -2946,8 +2969,9 @@ def _run_Z(m, X, V):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-S_dot) velocity of the connection point
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         rpr_S_dot_t = omega_z*rpr_q_y
@@ -2963,31 +2987,34 @@ def _run_Z(m, X, V):
         rpr_u_1_t = omega_z*rpr_S_dot_t_2
         rpr_u_1_y = -omega_z*rpr_S_dot_t
         rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y + axis_x_rpr_axes1_y*rpr_u_1_t
+        # (rpr-bias) acceleration of the connection point at zero joint accelerations
+        rpr_bias_in_axes1_y = 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
+        rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1_o) remainder of: acceleration of joint 1
         rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
         # (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
-        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
+        rpr_g_in_axes1_x_2 = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y_2 = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_o_in_axes1_x = (
-        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
+        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x_2 - axis_x_rpr_axes1_x*rpr_u_1_t
         )
-        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
+        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y_2
+        # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_o_in_axes1_x = (
-        rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1_o
-        )
+        rpr_phi_2_o_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1_o
         # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
         rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
+            rpr_g_in_axes1_x_2*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
+            rpr_g_in_axes1_y_2*rpr_h_1_in_spec1_x
         )
+        # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
         # (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rpr_c_o_in_axes1_y = (
-        -inv_rpr_q_2*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
-            rpr_h_2_in_spec1_x*rpr_qdd_1_o
+        rpr_c_t - inv_rpr_q_2*rpr_mu_1_o_in_axes1_z - rpr_h_2_in_spec1_x*rpr_qdd_1_o
         )
         # (rpr-U) velocity and gravity terms of the leg force
         rpr_U_x = (
@@ -3060,22 +3087,24 @@ def _run_Z(m, X, V):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
+        )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
         )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -3084,12 +3113,13 @@ def _run_Z(m, X, V):
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
@@ -3097,36 +3127,37 @@ def _run_Z(m, X, V):
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_in_axes2_x = (
-        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_o_in_axes2_y = (
-        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = -rrr_mu_1_t_3 - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-U) velocity and gravity terms of the leg force
         rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
@@ -3160,8 +3191,10 @@ def _run_Z(m, X, V):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
@@ -3175,23 +3208,26 @@ def _run_Z(m, X, V):
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2_t = -1.0/prr_v_2_in_axes0_y
-        prr_qd_2 = -prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
-        # (prr-W_2) centripetal tensor of link 2
-        prr_W_2_t = prr_qd_2*prr_qd_2
-        # (prr-u_1) centripetal acceleration of the connection point
+        # (prr-w_1) reciprocal vector 1
         axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
         axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
-        prr_u_1_x = -omega_z*prr_S_dot_t_2
-        prr_u_1_t = omega_z*prr_S_dot_t
-        prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x + axis_y_prr_axes2_x*prr_u_1_t
-        prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x - axis_x_prr_axes2_x*prr_u_1_t
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        # (prr-qd_1) rate of joint 1
+        prr_qd_1_t = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-W_2) centripetal tensor of link 2
+        prr_W_2_t = prr_qd_1_t*prr_qd_1_t
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_x = W_p_xx*prr_q_x
+        prr_u_1_y = W_p_xx*prr_q_y
+        prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x - axis_y_prr_axes2_x*prr_u_1_y
+        prr_u_1_in_axes2_y = axis_x_prr_axes2_x*prr_u_1_y + axis_y_prr_axes2_x*prr_u_1_x
+        # (prr-bias) acceleration of the connection point at zero joint accelerations
+        prr_bias_t = prr_platform_joint_offset_x*prr_qd_1_t*prr_qd_1_t
         # (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        prr_rel_o_in_axes2_x = prr_bias_t + prr_u_1_in_axes2_x
         # (prr-B_2_o) remainder of the acceleration tensor of link 2
         prr_B_2_o_in_axes2_xy = (
-        prr_qd_2_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
+        prr_w_1_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
         )
         # (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         prr_acc_1_o_in_axes0_x = (
@@ -3200,27 +3236,29 @@ def _run_Z(m, X, V):
         )
         # (prr-f_1_o) remainder of: inertia force of link 1 less its weight
         prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass
+        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+        prr_g_in_axes2_x = prr_c_2*prr_g_in_axes0_x + prr_g_in_axes0_y*prr_s_2
+        prr_g_in_axes2_y = prr_c_2*prr_g_in_axes0_y - prr_g_in_axes0_x*prr_s_2
         # (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        prr_acc_2_o_in_axes2_x = (
-        prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
-        )
-        prr_acc_2_o_in_axes2_y = (
-        prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
-        )
+        prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - prr_g_in_axes2_x
+        prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y - prr_g_in_axes2_y
         # (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prr_mu_2_o_in_axes2_z = (
         prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
             prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y
         )
+        # (prr-c) leg force on the platform without actuation and without the mass at the connection point
+        prr_c_t = prr_W_2_t*prr_h_2_in_spec2_x
+        prr_c_t_2 = prr_W_2_t*prr_h_2_in_spec2_y
         # (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
-        prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_o_t = prr_w_1_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
         prr_c_o_in_axes2_x = (
-        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
-            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x
+        prr_c_t + prr_c_o_t*prr_s_2 - prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y -
+            prr_c_2*prr_f_1_o_in_axes0_x
         )
         prr_c_o_in_axes2_y = (
-        prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y +
-            prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2
+        prr_c_t_2 + prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x + prr_c_2*prr_c_o_t +
+            prr_f_1_o_in_axes0_x*prr_s_2
         )
         # (prr-U) velocity and gravity terms of the leg force
         prr_U_x = -axis_x_prr_axes2_x*prr_c_o_in_axes2_x - axis_y_prr_axes2_x*prr_c_o_in_axes2_y
@@ -3246,7 +3284,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 92 mul, 51 add, 4 div, 3 sqrt, 0 trig
+# H: 93 mul, 51 add, 4 div, 3 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -3278,20 +3316,20 @@ def _run_H(m, X):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-w_1) reciprocal vector 1
-        rpr_w_1_in_axes1_y = 1.0/rpr_q_2
-        # (rpr-w_2) reciprocal vector 2
-        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
-        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
+        axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
-        rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x
+        rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y
         ok = (
         ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
             0.62)
         )
         # (rpr-w_2) reciprocal vector 2
-        out_H[_H_rpr[0][leg]] = rpr_w_2_x
-        out_H[_H_rpr[1][leg]] = rpr_w_2_y
+        out_H[_H_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_H[_H_rpr[1][leg]] = axis_x_rpr_axes1_y
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
     for leg, k in legs[1]:
@@ -3333,20 +3371,17 @@ def _run_H(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = (
-        rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
@@ -3374,21 +3409,25 @@ def _run_H(m, X):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
         axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
         axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
-        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y
-        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t
-        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
         prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
         prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
         # (prr-H_a_1) moment of the column's unit force about the platform origin
@@ -3443,8 +3482,10 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     # (f_p) inertia force of the platform less its weight
-    f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y
-    f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = -W_p_xx*h_star_y
+    f_p_x = f_p_t + a_t_x*m_star - alpha_z*h_star_y
+    f_p_y = a_t_y*m_star + alpha_z*h_star_x - f_p_t_2
     # (mu_p) inertia moment of the platform less that of its weight
     mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_a_rpr_z = [0.0] * 3
@@ -3482,28 +3523,31 @@ def _run_required(m, X, V, A):
         rpr_qd_1 = inv_rpr_q_2*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
         # (rpr-W_1) centripetal tensor of link 1
         rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
+        # (rpr-u_1) centripetal acceleration of the connection point
+        rpr_u_1_t = omega_z*rpr_S_dot_t_2
+        rpr_u_1_y = -omega_z*rpr_S_dot_t
         # (rpr-a_p) acceleration of the connection point without its centripetal part
         rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y
         rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x
         # (rpr-S_ddot) acceleration of the connection point
-        rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
-        rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
+        rpr_S_ddot_x = rpr_a_p_x - rpr_u_1_t
+        rpr_S_ddot_y = rpr_a_p_y + rpr_u_1_y
+        rpr_S_ddot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_ddot_x + axis_x_rpr_axes1_y*rpr_S_ddot_y
         rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y - axis_x_rpr_axes1_y*rpr_S_ddot_x
+        # (rpr-bias) acceleration of the connection point at zero joint accelerations
+        rpr_bias_in_axes1_y = 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
+        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
         rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
         rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
-        rpr_acc_2_in_axes1_x = (
-        axis_x_rpr_axes1_x*rpr_S_ddot_x + axis_x_rpr_axes1_y*rpr_S_ddot_y - rpr_g_in_axes1_x
-        )
+        rpr_acc_2_in_axes1_x = rpr_S_ddot_in_axes1_x - rpr_g_in_axes1_x
         rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_in_axes1_x = (
-        rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1
-        )
+        rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
+        rpr_phi_2_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_in_axes1_z = (
         rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
@@ -3511,9 +3555,9 @@ def _run_required(m, X, V, A):
             rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
         rpr_c_in_axes1_y = (
-        -inv_rpr_q_2*rpr_mu_1_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
-            rpr_h_2_in_spec1_x*rpr_qdd_1
+        rpr_c_t - inv_rpr_q_2*rpr_mu_1_in_axes1_z - rpr_h_2_in_spec1_x*rpr_qdd_1
         )
         rpr_c_x = -axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x - axis_x_rpr_axes1_y*rpr_c_in_axes1_y
         rpr_c_y = axis_x_rpr_axes1_x*rpr_c_in_axes1_y - axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x
@@ -3599,67 +3643,70 @@ def _run_required(m, X, V, A):
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_in_axes2_y
         rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_in_axes2_x
@@ -3699,8 +3746,10 @@ def _run_required(m, X, V, A):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
@@ -3723,10 +3772,10 @@ def _run_required(m, X, V, A):
         prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
         prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
         prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2 = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-qd_1) rate of joint 1
+        prr_qd_1_t = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
-        prr_W_2_t = prr_qd_2*prr_qd_2
+        prr_W_2_t = prr_qd_1_t*prr_qd_1_t
         # (prr-a_p) acceleration of the connection point without its centripetal part
         prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
         prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
@@ -3735,40 +3784,40 @@ def _run_required(m, X, V, A):
         prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
         prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
         prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
+        # (prr-bias) acceleration of the connection point at zero joint accelerations
+        prr_bias_t = prr_platform_joint_offset_x*prr_qd_1_t*prr_qd_1_t
         # (prr-rel) acceleration of the connection point left to the joint accelerations
-        prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
-        # (prr-B_2) acceleration tensor of link 2
-        prr_B_2_in_axes2_xy = (
-        prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
-        )
-        # (prr-acc_1) acceleration of the reference point of link 1, less gravity
-        prr_acc_1_in_axes0_x = (
-        prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x -
+        prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x + prr_bias_t
+        # (prr-qdd_1) acceleration of joint 1
+        prr_qdd_1_t = prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
+        prr_qdd_1 = (
+        prr_c_2*prr_rel_in_axes2_x + prr_qdd_1_t*prr_v_2_in_axes0_x -
             prr_S_ddot_in_axes2_y*prr_s_2
         )
+        # (prr-acc_1) acceleration of the reference point of link 1, less gravity
+        prr_acc_1_in_axes0_x = prr_qdd_1 - prr_g_in_axes0_x
         # (prr-f_1) inertia force of link 1 less its weight
         prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass
         # (prr-acc_2) acceleration of the reference point of link 2, less gravity
-        prr_acc_2_in_axes2_x = (
-        prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
-        )
-        prr_acc_2_in_axes2_y = (
-        prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
-        )
+        prr_g_in_axes2_x = prr_c_2*prr_g_in_axes0_x + prr_g_in_axes0_y*prr_s_2
+        prr_g_in_axes2_y = prr_c_2*prr_g_in_axes0_y - prr_g_in_axes0_x*prr_s_2
+        prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x - prr_g_in_axes2_x
+        prr_acc_2_in_axes2_y = prr_S_ddot_in_axes2_y - prr_g_in_axes2_y
         # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         prr_mu_2_in_axes2_z = (
-        prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz -
+        prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x - prr_J_2_in_spec2_zz*prr_qdd_1_t -
             prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y
         )
         # (prr-c) leg force on the platform without actuation and without the mass at the connection point
-        prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z - prr_f_1_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_t = prr_W_2_t*prr_h_2_in_spec2_x
+        prr_c_t_2 = prr_W_2_t*prr_h_2_in_spec2_y
+        prr_c_t_3 = prr_w_1_t*(prr_mu_2_in_axes2_z - prr_f_1_in_axes0_x*prr_v_2_in_axes0_x)
         prr_c_in_axes2_x = (
-        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 - prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y -
-            prr_c_2*prr_f_1_in_axes0_x
+        prr_c_t + prr_c_t_3*prr_s_2 - prr_c_2*prr_f_1_in_axes0_x - prr_h_2_in_spec2_y*prr_qdd_1_t
         )
         prr_c_in_axes2_y = (
-        prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t +
-            prr_f_1_in_axes0_x*prr_s_2
+        prr_c_t_2 + prr_c_2*prr_c_t_3 + prr_f_1_in_axes0_x*prr_s_2 +
+            prr_h_2_in_spec2_x*prr_qdd_1_t
         )
         prr_c_x = axis_x_prr_axes2_x*prr_c_in_axes2_x + axis_y_prr_axes2_x*prr_c_in_axes2_y
         prr_c_y = axis_x_prr_axes2_x*prr_c_in_axes2_y - axis_y_prr_axes2_x*prr_c_in_axes2_x
@@ -3824,16 +3873,22 @@ def _run_inverse_kinematics(m, X):
             rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
-        rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
         rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-q_1) displacement of joint 1
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
-        rpr_q_1 = atan2(inv_rpr_q_2*rpr_S_in_turn1_y, inv_rpr_q_2*rpr_S_in_turn1_x)
+        rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
+        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
+        rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
+        # (rpr-q_1) displacement of joint 1
+        rpr_q_1 = atan2(rpr_s_1, rpr_c_1)
         ok = (
         ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
             0.62)
@@ -3850,8 +3905,10 @@ def _run_inverse_kinematics(m, X):
             rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
@@ -3865,19 +3922,23 @@ def _run_inverse_kinematics(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-q_1) displacement of joint 1
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
-        rrr_q_1 = (
-        atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
-            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
-        )
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-q_1) displacement of joint 1
+        rrr_q_1 = atan2(rrr_s_1, rrr_c_1)
         # (rrr-x_2) from the origin of joint 2 to the connection point
         rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-q_2) displacement of joint 2
-        rrr_q_2 = (
-        atan2(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x)
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-q_2) displacement of joint 2
+        rrr_q_2 = atan2(rrr_s_2, rrr_c_2)
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
@@ -3890,8 +3951,10 @@ def _run_inverse_kinematics(m, X):
             prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
-        prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
         prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
@@ -3899,11 +3962,15 @@ def _run_inverse_kinematics(m, X):
         # (prr-q_1) displacement of joint 1
         prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         prr_q_1 = prr_S_in_axes0_x - prr_q_1_t
-        # (prr-q_2) displacement of joint 2
-        prr_q_2 = (
-        atan2(inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy), inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t)
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
         )
+        # (prr-q_2) displacement of joint 2
+        prr_q_2 = atan2(prr_s_2, prr_c_2)
         ok = ok & (prr_disc_1 >= 0.0)
         # (prr-q_1) displacement of joint 1
         out_q[_q_prr[0][leg]] = prr_q_1
@@ -3912,7 +3979,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 98 mul, 57 add, 4 div, 3 sqrt, 0 trig
+# joint_rates: 100 mul, 57 add, 4 div, 3 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -3951,12 +4018,15 @@ def _run_joint_rates(m, X, V):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-S_dot) velocity of the connection point
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
-        rpr_S_dot_x = t_dot_x - omega_z*rpr_q_y
-        rpr_S_dot_y = t_dot_y + omega_z*rpr_q_x
+        rpr_S_dot_t = omega_z*rpr_q_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
         rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
         rpr_qd_1 = inv_rpr_q_2*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
@@ -4008,24 +4078,29 @@ def _run_joint_rates(m, X, V):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y
-        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
         rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
-        -(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y
+        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*(rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2))
+            rrr_qd_1*rrr_r_1_in_axes2_x)
         )
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
@@ -4051,21 +4126,30 @@ def _run_joint_rates(m, X, V):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
+        # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
+        # (prr-s_2) sine of the angle of joint 2 from its reference direction
+        prr_s_2 = (
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy)
+        )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
-        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
+        prr_S_dot_t = omega_z*prr_q_y
+        prr_S_dot_t_2 = omega_z*prr_q_x
+        prr_S_dot_x = t_dot_x - prr_S_dot_t
+        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
         # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_in_axes0_y = (
-        -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x
-        )
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_1) reciprocal vector 1
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
         # (prr-qd_1) rate of joint 1
-        prr_qd_1_t = (
-        (prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)/prr_v_2_in_axes0_y
-        )
+        prr_qd_1_t = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         prr_qd_1 = (
-        prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx +
-            inv_prr_size_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_1_t*(prr_S_x*prr_base_frame_xy
-            + prr_S_y*prr_base_frame_yy)
+        prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx -
+            prr_qd_1_t*prr_v_2_in_axes0_x
         )
         ok = ok & (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size)
         # (prr-qd_1) rate of joint 1
@@ -4121,8 +4205,9 @@ def _run_joint_accelerations(m, X, V, A):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-S_dot) velocity of the connection point
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         rpr_S_dot_t = omega_z*rpr_q_y
@@ -4132,21 +4217,24 @@ def _run_joint_accelerations(m, X, V, A):
         rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
         rpr_qd_1 = inv_rpr_q_2*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
+        # (rpr-u_1) centripetal acceleration of the connection point
+        rpr_u_1_t = omega_z*rpr_S_dot_t_2
+        rpr_u_1_y = -omega_z*rpr_S_dot_t
         # (rpr-a_p) acceleration of the connection point without its centripetal part
         rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y
         rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x
         # (rpr-S_ddot) acceleration of the connection point
-        rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
-        rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
+        rpr_S_ddot_x = rpr_a_p_x - rpr_u_1_t
+        rpr_S_ddot_y = rpr_a_p_y + rpr_u_1_y
+        rpr_S_ddot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_ddot_x + axis_x_rpr_axes1_y*rpr_S_ddot_y
+        rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y - axis_x_rpr_axes1_y*rpr_S_ddot_x
+        # (rpr-bias) acceleration of the connection point at zero joint accelerations
+        rpr_bias_in_axes1_y = 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_in_axes1_x = (
-        axis_x_rpr_axes1_x*rpr_S_ddot_x + axis_x_rpr_axes1_y*rpr_S_ddot_y +
-            rpr_q_2*rpr_qd_1*rpr_qd_1
-        )
-        rpr_rel_in_axes1_y = (
-        axis_x_rpr_axes1_x*rpr_S_ddot_y - axis_x_rpr_axes1_y*rpr_S_ddot_x -
-            2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
-        )
+        rpr_rel_in_axes1_x = rpr_S_ddot_in_axes1_x - rpr_W_1_in_axes1_xx*rpr_q_2
+        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         ok = (
@@ -4207,41 +4295,45 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
+        )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
         )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
-        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_in_axes2_x = (
-        axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
-        )
-        rrr_rel_in_axes2_y = (
-        axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        )
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-qdd_1) acceleration of joint 1
         rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
@@ -4270,8 +4362,10 @@ def _run_joint_accelerations(m, X, V, A):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
@@ -4283,29 +4377,31 @@ def _run_joint_accelerations(m, X, V, A):
         prr_S_dot_x = t_dot_x - prr_S_dot_t
         prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
         # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2_t = -1.0/prr_v_2_in_axes0_y
-        prr_qd_2 = -prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        # (prr-qd_1) rate of joint 1
+        prr_qd_1_t = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-a_p) acceleration of the connection point without its centripetal part
         prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
         prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
-        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
-        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
         prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
         prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
         prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
+        # (prr-bias) acceleration of the connection point at zero joint accelerations
+        prr_bias_t = prr_platform_joint_offset_x*prr_qd_1_t*prr_qd_1_t
         # (prr-rel) acceleration of the connection point left to the joint accelerations
-        prr_rel_in_axes2_x = (
-        axis_x_prr_axes2_x*prr_S_ddot_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2 -
-            axis_y_prr_axes2_x*prr_S_ddot_y
-        )
+        prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x + prr_bias_t
         # (prr-qdd_1) acceleration of joint 1
-        prr_qdd_1_t = prr_qd_2_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
+        prr_qdd_1_t = prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
         prr_qdd_1 = (
-        prr_c_2*prr_rel_in_axes2_x - prr_S_ddot_in_axes2_y*prr_s_2 -
-            prr_platform_joint_offset_x*prr_qdd_1_t*prr_s_2
+        prr_c_2*prr_rel_in_axes2_x + prr_qdd_1_t*prr_v_2_in_axes0_x -
+            prr_S_ddot_in_axes2_y*prr_s_2
         )
         ok = ok & (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size)
         # (prr-qdd_1) acceleration of joint 1
@@ -4382,24 +4478,31 @@ def _run_legs(m, X, V, A):
         rpr_qd_1 = inv_rpr_q_2*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
         # (rpr-W_1) centripetal tensor of link 1
         rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
+        # (rpr-u_1) centripetal acceleration of the connection point
+        rpr_u_1_t = omega_z*rpr_S_dot_t_2
+        rpr_u_1_y = -omega_z*rpr_S_dot_t
         # (rpr-a_p) acceleration of the connection point without its centripetal part
         rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y
         rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x
         # (rpr-S_ddot) acceleration of the connection point
-        rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
-        rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
+        rpr_S_ddot_x = rpr_a_p_x - rpr_u_1_t
+        rpr_S_ddot_y = rpr_a_p_y + rpr_u_1_y
+        rpr_S_ddot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_ddot_x + axis_x_rpr_axes1_y*rpr_S_ddot_y
         rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y - axis_x_rpr_axes1_y*rpr_S_ddot_x
+        # (rpr-bias) acceleration of the connection point at zero joint accelerations
+        rpr_bias_in_axes1_y = 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
+        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
         rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
         rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
-        rpr_acc_2_in_axes1_x = (
-        axis_x_rpr_axes1_x*rpr_S_ddot_x + axis_x_rpr_axes1_y*rpr_S_ddot_y - rpr_g_in_axes1_x
-        )
+        rpr_acc_2_in_axes1_x = rpr_S_ddot_in_axes1_x - rpr_g_in_axes1_x
         rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
+        # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
+        rpr_phi_2_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_in_axes1_z = (
         rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
@@ -4407,15 +4510,12 @@ def _run_legs(m, X, V, A):
             rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
         rpr_c_in_axes1_y = (
-        -inv_rpr_q_2*rpr_mu_1_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
-            rpr_h_2_in_spec1_x*rpr_qdd_1
+        rpr_c_t - inv_rpr_q_2*rpr_mu_1_in_axes1_z - rpr_h_2_in_spec1_x*rpr_qdd_1
         )
         # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
-        rpr_c_true_in_axes1_x = (
-        rpr_h_2_in_spec1_y*rpr_qdd_1 - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
-            rpr_acc_2_in_axes1_x*rpr_link2_mass
-        )
+        rpr_c_true_in_axes1_x = -rpr_phi_2_in_axes1_x - rpr_acc_2_in_axes1_x*rpr_link2_mass
         rpr_c_true_in_axes1_y = rpr_c_in_axes1_y - rpr_acc_2_in_axes1_y*rpr_link2_mass
         rpr_c_true_x = (
         axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x - axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y
@@ -4496,67 +4596,70 @@ def _run_legs(m, X, V, A):
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
         rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass
@@ -4594,8 +4697,10 @@ def _run_legs(m, X, V, A):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
@@ -4618,10 +4723,10 @@ def _run_legs(m, X, V, A):
         prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
         prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
         prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2 = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-qd_1) rate of joint 1
+        prr_qd_1_t = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
-        prr_W_2_t = prr_qd_2*prr_qd_2
+        prr_W_2_t = prr_qd_1_t*prr_qd_1_t
         # (prr-a_p) acceleration of the connection point without its centripetal part
         prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
         prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
@@ -4630,40 +4735,40 @@ def _run_legs(m, X, V, A):
         prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
         prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
         prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
+        # (prr-bias) acceleration of the connection point at zero joint accelerations
+        prr_bias_t = prr_platform_joint_offset_x*prr_qd_1_t*prr_qd_1_t
         # (prr-rel) acceleration of the connection point left to the joint accelerations
-        prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
-        # (prr-B_2) acceleration tensor of link 2
-        prr_B_2_in_axes2_xy = (
-        prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
-        )
-        # (prr-acc_1) acceleration of the reference point of link 1, less gravity
-        prr_acc_1_in_axes0_x = (
-        prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x -
+        prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x + prr_bias_t
+        # (prr-qdd_1) acceleration of joint 1
+        prr_qdd_1_t = prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
+        prr_qdd_1 = (
+        prr_c_2*prr_rel_in_axes2_x + prr_qdd_1_t*prr_v_2_in_axes0_x -
             prr_S_ddot_in_axes2_y*prr_s_2
         )
+        # (prr-acc_1) acceleration of the reference point of link 1, less gravity
+        prr_acc_1_in_axes0_x = prr_qdd_1 - prr_g_in_axes0_x
         # (prr-f_1) inertia force of link 1 less its weight
         prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass
         # (prr-acc_2) acceleration of the reference point of link 2, less gravity
-        prr_acc_2_in_axes2_x = (
-        prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
-        )
-        prr_acc_2_in_axes2_y = (
-        prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
-        )
+        prr_g_in_axes2_x = prr_c_2*prr_g_in_axes0_x + prr_g_in_axes0_y*prr_s_2
+        prr_g_in_axes2_y = prr_c_2*prr_g_in_axes0_y - prr_g_in_axes0_x*prr_s_2
+        prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x - prr_g_in_axes2_x
+        prr_acc_2_in_axes2_y = prr_S_ddot_in_axes2_y - prr_g_in_axes2_y
         # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         prr_mu_2_in_axes2_z = (
-        prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz -
+        prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x - prr_J_2_in_spec2_zz*prr_qdd_1_t -
             prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y
         )
         # (prr-c) leg force on the platform without actuation and without the mass at the connection point
-        prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z - prr_f_1_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_t = prr_W_2_t*prr_h_2_in_spec2_x
+        prr_c_t_2 = prr_W_2_t*prr_h_2_in_spec2_y
+        prr_c_t_3 = prr_w_1_t*(prr_mu_2_in_axes2_z - prr_f_1_in_axes0_x*prr_v_2_in_axes0_x)
         prr_c_in_axes2_x = (
-        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 - prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y -
-            prr_c_2*prr_f_1_in_axes0_x
+        prr_c_t + prr_c_t_3*prr_s_2 - prr_c_2*prr_f_1_in_axes0_x - prr_h_2_in_spec2_y*prr_qdd_1_t
         )
         prr_c_in_axes2_y = (
-        prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t +
-            prr_f_1_in_axes0_x*prr_s_2
+        prr_c_t_2 + prr_c_2*prr_c_t_3 + prr_f_1_in_axes0_x*prr_s_2 +
+            prr_h_2_in_spec2_x*prr_qdd_1_t
         )
         # (prr-c_true) leg force on the platform without actuation, the last link's mass included
         prr_c_true_in_axes2_x = prr_c_in_axes2_x - prr_acc_2_in_axes2_x*prr_link2_mass
@@ -4701,11 +4806,11 @@ def _run_potential(m, X):
     R_yx = sin(X_2)
     ok = True
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (potential) potential energy
-    potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x - R_yx*h_star_in_platform_y) +
-        gravity_y*(R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x + m_star*t_y)
-    )
+    potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
@@ -4716,8 +4821,10 @@ def _run_potential(m, X):
             rpr_potential_t_2,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
-        rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
         rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-q_2) displacement of joint 2
@@ -4728,12 +4835,15 @@ def _run_potential(m, X):
         rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
+        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
         # (potential) potential energy
         rpr_potential_t_3 = (
-        (rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
+        rpr_g_in_axes1_x*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
             rpr_link1_mass*(rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)) +
-            (rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1)*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y
-            + rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1))
+            rpr_g_in_axes1_y*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y +
+            rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1))
         )
         ok = (
         ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
@@ -4752,8 +4862,10 @@ def _run_potential(m, X):
             rrr_platform_point_y, rrr_potential_t, rrr_potential_t_2, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
@@ -4780,14 +4892,16 @@ def _run_potential(m, X):
         rrr_s_2 = (
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
         # (potential) potential energy
         rrr_potential_t_3 = (
-        (rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x +
-            rrr_c_2*rrr_h_2_in_spec2_x + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
-            rrr_potential_t_2*rrr_s_1) - rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
-            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
-            rrr_potential_t*rrr_s_1))
+        rrr_g_in_axes1_x*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
+            rrr_h_2_in_spec2_y*rrr_s_2) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
+            rrr_c_2*rrr_h_2_in_spec2_y + rrr_h_2_in_spec2_x*rrr_s_2 +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 - rrr_potential_t*rrr_s_1))
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
@@ -4802,8 +4916,10 @@ def _run_potential(m, X):
             prr_platform_point_y, prr_potential_t, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
-        prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
         prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
@@ -4835,7 +4951,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 106 mul, 67 add, 4 div, 6 sqrt, 0 trig
+# condition: 107 mul, 67 add, 4 div, 6 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -4877,11 +4993,11 @@ def _run_condition(m, X):
         # (rpr-q_2) displacement of joint 2
         rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
-        # (rpr-w_1) reciprocal vector 1
-        rpr_w_1_in_axes1_y = 1.0/rpr_q_2
-        # (rpr-w_2) reciprocal vector 2
-        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
-        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
+        # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        # (rpr-S_dot) velocity of the connection point
+        axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         # (rpr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rpr_pivot_size = abs(rpr_q_2_t)
         rpr_pivot_size_2 = abs(rpr_q_2)
@@ -4889,7 +5005,7 @@ def _run_condition(m, X):
         least(1.6129032258064515*sqrt(rpr_pivot_size), 1.6129032258064517*rpr_pivot_size_2)
         )
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
-        rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x
+        rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y
         # (spread) rms distance of the platform points from their centroid
         rpr_spread_t = b_c_in_platform_x - rpr_platform_point_x
         rpr_spread_t_2 = b_c_in_platform_y - rpr_platform_point_y
@@ -4901,8 +5017,8 @@ def _run_condition(m, X):
         # (spread) rms distance of the platform points from their centroid
         spread_rpr += rpr_spread_t_3
         # (rpr-w_2) reciprocal vector 2
-        out_H[_H_rpr[0][leg]] = rpr_w_2_x
-        out_H[_H_rpr[1][leg]] = rpr_w_2_y
+        out_H[_H_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_H[_H_rpr[1][leg]] = axis_x_rpr_axes1_y
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
         # (rpr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -4948,20 +5064,17 @@ def _run_condition(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = (
-        rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_pivot_size = abs(rrr_rho2_1)
         rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
@@ -5006,21 +5119,25 @@ def _run_condition(m, X):
         # (prr-disc_1) discriminant of the distance equation
         prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
         prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
+        # (prr-q_1) displacement of joint 1
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
         inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
         axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
         axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
-        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y
-        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t
-        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
         prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
         prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
         # (prr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -5208,12 +5325,12 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_1 = q[[1, 2, 4]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_1
-    gap = _wrapped(subtract_1, [1])
-    return (gap,)
+    residual = _wrapped(subtract_1, [1])
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -5222,7 +5339,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

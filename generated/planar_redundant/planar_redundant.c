@@ -145,9 +145,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -209,6 +209,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -257,7 +281,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -267,7 +291,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -280,7 +304,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -297,16 +321,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -314,7 +338,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1416,44 +1449,46 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real W_p_xx, R_xx, R_yx, h_star_x, h_star_y;
+    real W_p_xx, R_xx, R_yx, h_star_x, h_star_y, f_p_t, f_p_t_2;
 } values;
 
 INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
 {
     /* (W_p) centripetal tensor of the platform */
     const real omega_z = V[2*w + k];
-    const real W_p_xx = -omega_z*omega_z;
-    v->W_p_xx = W_p_xx;
+    v->W_p_xx = -omega_z*omega_z;
 }
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
     /* X: named entries */
     const real X_2 = X[2*w + k];
-    const real R_xx = cosine(X_2);
-    const real R_yx = sine(X_2);
+    v->R_xx = cosine(X_2);
+    v->R_yx = sine(X_2);
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x - R_yx*m->h_star_in_platform_y;
-    const real h_star_y = R_xx*m->h_star_in_platform_y + R_yx*m->h_star_in_platform_x;
-    v->R_xx = R_xx;
-    v->R_yx = R_yx;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
+    v->h_star_x = v->R_xx*m->h_star_in_platform_x - v->R_yx*m->h_star_in_platform_y;
+    v->h_star_y = v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x;
+}
+
+INLINE void stage_V_X(values *v)
+{
+    /* (f_p) inertia force of the platform less its weight */
+    v->f_p_t = v->W_p_xx*v->h_star_x;
+    v->f_p_t_2 = v->W_p_xx*v->h_star_y;
 }
 
 typedef struct {
     real prrr_q_x, prrr_q_y, prrr_rho2_2, prrr_disc_2, prrr_c_2, prrr_s_2, prrr_c_3, prrr_s_3_t,
-        prrr_r_2_t, prrr_r_2_in_axes2_x, prrr_r_2_in_axes3_x, prrr_r_2_in_axes3_y, prrr_w_2_t,
-        prrr_e_1_in_axes3_y, axis_y_prrr_axes3_x, axis_x_prrr_axes3_x, inv_prrr_r_2_in_axes3_y,
-        prrr_w_2_x, prrr_w_2_y, prrr_qd_2_t, prrr_a_p_x, prrr_a_p_y, prrr_S_dot_t, prrr_S_dot_t_2,
-        prrr_S_dot_rest_x, prrr_S_dot_rest_y, prrr_W_2_in_axes2_xx, prrr_W_3_t, prrr_bias_in_axes3_x,
-        prrr_S_ddot_x, prrr_S_ddot_y, prrr_w_2_t_2, prrr_H_a_2_z, prrr_P_c_2_in_axes0_x,
-        prrr_d_Gamma_3_in_axes3_x, prrr_d_G_in_axes3_xx, prrr_d_G_in_axes3_xy, prrr_d_c_in_axes3_xy,
-        prrr_Q_t_2, prrr_u_1_x, prrr_u_1_t, prrr_g_in_axes2_x, prrr_g_in_axes2_y, prrr_Kd_2,
-        prrr_Kc_2, prrr_Ks_2, prrr_root_2, inv_prrr_rho2_2, prrr_x_3_in_axes2_x, prrr_B_2_in_axes2_xy,
-        prrr_alpha_3_in_axes3_z, prrr_acc_2_in_axes2_x, prrr_acc_2_in_axes2_y, prrr_acc_3_in_axes3_x,
-        prrr_acc_3_in_axes3_y, prrr_N_2_in_axes2_z, prrr_G_in_axes3_y, prrr_c_in_axes3_y;
+        prrr_r_2_in_axes3_x, prrr_r_2_in_axes3_y, prrr_w_2_t, prrr_e_1_in_axes3_y,
+        axis_y_prrr_axes3_x, axis_x_prrr_axes3_x, inv_prrr_r_2_in_axes3_y, prrr_w_2_t_2, prrr_w_2_x,
+        prrr_w_2_y, prrr_g_in_axes2_x, prrr_g_in_axes2_y, prrr_g_in_axes3_x, prrr_g_in_axes3_y,
+        prrr_P_c_2_in_axes0_x, prrr_H_a_2_z, prrr_a_p_x, prrr_a_p_y, prrr_qd_2, prrr_qd_3, prrr_u_1_x,
+        prrr_u_1_t, prrr_bias_in_axes3_y, prrr_bias_in_axes3_x, prrr_f_2_t, prrr_f_2_t_2, prrr_c_t,
+        prrr_c_t_2, prrr_S_ddot_in_axes3_x, prrr_S_ddot_in_axes3_y, prrr_qdd_2_t, prrr_qdd_3,
+        prrr_Q_xx, prrr_Q_xy, prrr_Q_yy, prrr_dy_1_P_1, prrr_d_P_1_x, prrr_d_P_1_y, prrr_M_ta_t,
+        prrr_M_ta_t_2, prrr_M_aa_t, prrr_M_ya_1_z, prrr_U_x, prrr_U_y, prrr_P_1_o, prrr_Z_a_t,
+        prrr_acc_2_in_axes2_x, prrr_acc_2_in_axes2_y, prrr_acc_3_in_axes3_x, prrr_acc_3_in_axes3_y,
+        prrr_G_in_axes3_y, prrr_G_in_axes3_x, prrr_c_in_axes3_x, prrr_c_in_axes3_y;
 } values_prrr;
 
 INLINE void stage_prrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -1462,12 +1497,12 @@ INLINE void stage_prrr_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (prrr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real prrr_q_x = R_xx*m->prrr_platform_point_x[i] - R_yx*m->prrr_platform_point_y[i];
-    const real prrr_q_y = R_xx*m->prrr_platform_point_y[i] + R_yx*m->prrr_platform_point_x[i];
+    v->prrr_q_x = R_xx*m->prrr_platform_point_x[i] - R_yx*m->prrr_platform_point_y[i];
+    v->prrr_q_y = R_xx*m->prrr_platform_point_y[i] + R_yx*m->prrr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real prrr_S_x = t_x - m->prrr_base_point_x[i] + prrr_q_x;
+    const real prrr_S_x = t_x - m->prrr_base_point_x[i] + v->prrr_q_x;
     const real t_y = X[1*w + j];
-    const real prrr_S_y = t_y - m->prrr_base_point_y[i] + prrr_q_y;
+    const real prrr_S_y = t_y - m->prrr_base_point_y[i] + v->prrr_q_y;
     const real prrr_S_in_axes0_y = -prrr_S_x*m->prrr_base_frame_xx[i] -
         prrr_S_y*m->prrr_base_frame_yx[i];
     /* (prrr-x_2) from the origin of joint 2 to the connection point */
@@ -1484,64 +1519,58 @@ INLINE void stage_prrr_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
     const real prrr_Ks_2 = m->prrr_joint3_offset_x[i]*prrr_x_2_in_axes0_x;
     /* (prrr-rho2_2) squared amplitude */
-    const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+    v->prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
     /* (prrr-disc_2) discriminant */
-    const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+    v->prrr_disc_2 = v->prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
     /* (prrr-root_2) root, with the sign of the branch */
-    const real prrr_root_2 = m->prrr_branch_2[i]*root(prrr_disc_2);
+    const real prrr_root_2 = m->prrr_branch_2[i]*root(v->prrr_disc_2);
     /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
-    const real prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2);
+    const real inv_prrr_rho2_2 = 1/v->prrr_rho2_2;
+    v->prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2);
     /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kd_2*prrr_Ks_2 - prrr_Kc_2*prrr_root_2);
+    v->prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kd_2*prrr_Ks_2 - prrr_Kc_2*prrr_root_2);
     /* (prrr-x_3) from the origin of joint 3 to the connection point */
     const real prrr_x_3_in_axes2_x =
         m->inv_prrr_size_t[i]*prrr_Kd_2*m->prrr_joint3_offset_x[i] -
         m->prrr_joint3_offset_x[i];
     /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-    const real prrr_c_3 =
+    v->prrr_c_3 =
         m->inv_prrr_size_t_2[i]*m->prrr_platform_joint_offset_x[i]*prrr_x_3_in_axes2_x;
     /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-    const real prrr_s_3_t =
+    v->prrr_s_3_t =
         m->inv_prrr_size_t[i]*m->inv_prrr_size_t_2[i]*m->prrr_joint3_offset_x[i]*m->prrr_platform_joint_offset_x[i]*prrr_root_2;
     /* (prrr-r_2) from joint 2 to the connection point, along the links */
-    const real prrr_r_2_t = m->prrr_platform_joint_offset_x[i]*prrr_s_3_t;
+    const real prrr_r_2_t = m->prrr_platform_joint_offset_x[i]*v->prrr_s_3_t;
     const real prrr_r_2_in_axes2_x = m->prrr_joint3_offset_x[i] +
-        prrr_c_3*m->prrr_platform_joint_offset_x[i];
-    const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
-    const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
+        v->prrr_c_3*m->prrr_platform_joint_offset_x[i];
+    v->prrr_r_2_in_axes3_x = v->prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*v->prrr_s_3_t;
+    v->prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*v->prrr_s_3_t - v->prrr_c_3*prrr_r_2_t;
     /* (prrr-w_2) reciprocal vector 1 */
-    const real prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
-    const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
-    const real axis_y_prrr_axes3_x = m->prrr_base_frame_xx[i]*prrr_w_2_t +
-        m->prrr_base_frame_xy[i]*prrr_e_1_in_axes3_y;
-    const real axis_x_prrr_axes3_x = m->prrr_base_frame_yx[i]*prrr_w_2_t +
-        m->prrr_base_frame_yy[i]*prrr_e_1_in_axes3_y;
-    const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
-    const real prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
-    const real prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
-    /* (prrr-qd_2) rate of joint 2 */
-    const real prrr_qd_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
-    v->prrr_q_x = prrr_q_x;
-    v->prrr_q_y = prrr_q_y;
-    v->prrr_rho2_2 = prrr_rho2_2;
-    v->prrr_disc_2 = prrr_disc_2;
-    v->prrr_c_2 = prrr_c_2;
-    v->prrr_s_2 = prrr_s_2;
-    v->prrr_c_3 = prrr_c_3;
-    v->prrr_s_3_t = prrr_s_3_t;
-    v->prrr_r_2_t = prrr_r_2_t;
-    v->prrr_r_2_in_axes2_x = prrr_r_2_in_axes2_x;
-    v->prrr_r_2_in_axes3_x = prrr_r_2_in_axes3_x;
-    v->prrr_r_2_in_axes3_y = prrr_r_2_in_axes3_y;
-    v->prrr_w_2_t = prrr_w_2_t;
-    v->prrr_e_1_in_axes3_y = prrr_e_1_in_axes3_y;
-    v->axis_y_prrr_axes3_x = axis_y_prrr_axes3_x;
-    v->axis_x_prrr_axes3_x = axis_x_prrr_axes3_x;
-    v->inv_prrr_r_2_in_axes3_y = inv_prrr_r_2_in_axes3_y;
-    v->prrr_w_2_x = prrr_w_2_x;
-    v->prrr_w_2_y = prrr_w_2_y;
-    v->prrr_qd_2_t = prrr_qd_2_t;
+    v->prrr_w_2_t = v->prrr_c_2*v->prrr_s_3_t - v->prrr_c_3*v->prrr_s_2;
+    v->prrr_e_1_in_axes3_y = v->prrr_c_2*v->prrr_c_3 + v->prrr_s_2*v->prrr_s_3_t;
+    v->axis_y_prrr_axes3_x = m->prrr_base_frame_xx[i]*v->prrr_w_2_t +
+        m->prrr_base_frame_xy[i]*v->prrr_e_1_in_axes3_y;
+    v->axis_x_prrr_axes3_x = m->prrr_base_frame_yx[i]*v->prrr_w_2_t +
+        m->prrr_base_frame_yy[i]*v->prrr_e_1_in_axes3_y;
+    v->inv_prrr_r_2_in_axes3_y = 1/v->prrr_r_2_in_axes3_y;
+    v->prrr_w_2_t_2 = -v->inv_prrr_r_2_in_axes3_y*v->prrr_w_2_t;
+    v->prrr_w_2_x = -v->axis_x_prrr_axes3_x*v->inv_prrr_r_2_in_axes3_y;
+    v->prrr_w_2_y = v->axis_y_prrr_axes3_x*v->inv_prrr_r_2_in_axes3_y;
+    /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->prrr_g_in_axes2_x = m->prrr_acc_1_in_axes0_y[i]*v->prrr_c_2 +
+        m->prrr_g_in_axes0_x[i]*v->prrr_s_2;
+    v->prrr_g_in_axes2_y = v->prrr_c_2*m->prrr_g_in_axes0_x[i] -
+        m->prrr_acc_1_in_axes0_y[i]*v->prrr_s_2;
+    /* (prrr-acc_3) acceleration of the reference point of link 3, less gravity */
+    v->prrr_g_in_axes3_x = v->axis_x_prrr_axes3_x*m->gravity_x -
+        v->axis_y_prrr_axes3_x*m->gravity_y;
+    v->prrr_g_in_axes3_y = v->axis_x_prrr_axes3_x*m->gravity_y +
+        v->axis_y_prrr_axes3_x*m->gravity_x;
+    /* (prrr-P_c_2) force that accelerates joint 2, per unit */
+    v->prrr_P_c_2_in_axes0_x = v->prrr_c_2*m->prrr_h_2_in_spec2_x[i] -
+        m->prrr_h_2_in_spec2_y[i]*v->prrr_s_2;
+    /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+    v->prrr_H_a_2_z = v->prrr_q_x*v->prrr_w_2_y - v->prrr_q_y*v->prrr_w_2_x;
 }
 
 INLINE void stage_prrr_A_X(size_t w, size_t j, const real *A, values_prrr *v)
@@ -1549,11 +1578,9 @@ INLINE void stage_prrr_A_X(size_t w, size_t j, const real *A, values_prrr *v)
     /* (prrr-a_p) acceleration of the connection point without its centripetal part */
     const real alpha_z = A[2*w + j];
     const real t_ddot_x = A[0*w + j];
-    const real prrr_a_p_x = t_ddot_x - alpha_z*v->prrr_q_y;
+    v->prrr_a_p_x = t_ddot_x - alpha_z*v->prrr_q_y;
     const real t_ddot_y = A[1*w + j];
-    const real prrr_a_p_y = t_ddot_y + alpha_z*v->prrr_q_x;
-    v->prrr_a_p_x = prrr_a_p_x;
-    v->prrr_a_p_y = prrr_a_p_y;
+    v->prrr_a_p_y = t_ddot_y + alpha_z*v->prrr_q_x;
 }
 
 INLINE void stage_prrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1572,59 +1599,54 @@ INLINE void stage_prrr_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real prrr_S_dot_rest_x = prrr_S_dot_x - m->prrr_base_frame_xy[i]*prrr_yd_1;
     const real prrr_S_dot_rest_y = prrr_S_dot_y - m->prrr_base_frame_yy[i]*prrr_yd_1;
     /* (prrr-qd_2) rate of joint 2 */
-    const real prrr_qd_2 =
-        -v->inv_prrr_r_2_in_axes3_y*(v->axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+    v->prrr_qd_2 = -v->inv_prrr_r_2_in_axes3_y*(v->axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
         v->axis_y_prrr_axes3_x*prrr_S_dot_rest_y);
+    /* (prrr-qd_3) rate of joint 3 */
+    v->prrr_qd_3 = m->prrr_w_3_in_axes3_y[i]*(v->axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+        v->axis_y_prrr_axes3_x*prrr_S_dot_rest_x - v->prrr_qd_2*v->prrr_r_2_in_axes3_x);
     /* (prrr-W_2) centripetal tensor of link 2 */
-    const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
+    const real prrr_W_2_in_axes2_xx = -v->prrr_qd_2*v->prrr_qd_2;
     /* (prrr-omega_3) angular velocity of link 3 */
-    const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
-        m->prrr_w_3_in_axes3_y[i]*(v->axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-        v->axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*v->prrr_r_2_in_axes3_x);
+    const real prrr_omega_3_in_axes3_z = v->prrr_qd_2 + v->prrr_qd_3;
     /* (prrr-W_3) centripetal tensor of link 3 */
     const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
+    /* (prrr-u_1) centripetal acceleration of the connection point */
+    v->prrr_u_1_x = -omega_z*prrr_S_dot_t_2;
+    v->prrr_u_1_t = omega_z*prrr_S_dot_t;
     /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real prrr_bias_in_axes3_x =
-        prrr_W_2_in_axes2_xx*v->prrr_c_3*m->prrr_joint3_offset_x[i] -
+    v->prrr_bias_in_axes3_y = prrr_W_2_in_axes2_xx*m->prrr_joint3_offset_x[i]*v->prrr_s_3_t;
+    v->prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*v->prrr_c_3*m->prrr_joint3_offset_x[i] -
         prrr_W_3_t*m->prrr_platform_joint_offset_x[i];
-    v->prrr_S_dot_t = prrr_S_dot_t;
-    v->prrr_S_dot_t_2 = prrr_S_dot_t_2;
-    v->prrr_S_dot_rest_x = prrr_S_dot_rest_x;
-    v->prrr_S_dot_rest_y = prrr_S_dot_rest_y;
-    v->prrr_W_2_in_axes2_xx = prrr_W_2_in_axes2_xx;
-    v->prrr_W_3_t = prrr_W_3_t;
-    v->prrr_bias_in_axes3_x = prrr_bias_in_axes3_x;
+    /* (prrr-f_2) inertia force of link 2 less its weight */
+    v->prrr_f_2_t = prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i];
+    v->prrr_f_2_t_2 = prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_y[i];
+    /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->prrr_c_t = prrr_W_3_t*m->prrr_h_3_in_spec3_x[i];
+    v->prrr_c_t_2 = prrr_W_3_t*m->prrr_h_3_in_spec3_y[i];
 }
 
-INLINE void stage_prrr_A_V_X(size_t w, size_t j, const real *V, values_prrr *v)
+INLINE void stage_prrr_A_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *A,
+    values_prrr *v)
 {
     /* (prrr-S_ddot) acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real prrr_S_ddot_x = v->prrr_a_p_x - omega_z*v->prrr_S_dot_t_2;
-    const real prrr_S_ddot_y = v->prrr_a_p_y - omega_z*v->prrr_S_dot_t;
-    v->prrr_S_ddot_x = prrr_S_ddot_x;
-    v->prrr_S_ddot_y = prrr_S_ddot_y;
-}
-
-INLINE void stage_prrr_H_condition(const prepared *m, size_t i, values_prrr *v)
-{
-    /* (prrr-r_2) from joint 2 to the connection point, along the links */
-    const real prrr_r_2_in_axes3_y = v->prrr_r_2_in_axes2_x*v->prrr_s_3_t -
-        v->prrr_c_3*m->prrr_platform_joint_offset_x[i]*v->prrr_s_3_t;
-    /* (prrr-w_2) reciprocal vector 1 */
-    const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
-    const real prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*v->prrr_w_2_t;
-    const real prrr_w_2_x = -inv_prrr_r_2_in_axes3_y*(m->prrr_base_frame_yx[i]*v->prrr_w_2_t +
-        m->prrr_base_frame_yy[i]*v->prrr_e_1_in_axes3_y);
-    const real prrr_w_2_y = inv_prrr_r_2_in_axes3_y*(m->prrr_base_frame_xx[i]*v->prrr_w_2_t +
-        m->prrr_base_frame_xy[i]*v->prrr_e_1_in_axes3_y);
-    /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-    const real prrr_H_a_2_z = v->prrr_q_x*prrr_w_2_y - v->prrr_q_y*prrr_w_2_x;
-    v->prrr_r_2_in_axes3_y = prrr_r_2_in_axes3_y;
-    v->prrr_w_2_t_2 = prrr_w_2_t_2;
-    v->prrr_w_2_x = prrr_w_2_x;
-    v->prrr_w_2_y = prrr_w_2_y;
-    v->prrr_H_a_2_z = prrr_H_a_2_z;
+    const real prrr_S_ddot_x = v->prrr_a_p_x + v->prrr_u_1_x;
+    const real prrr_S_ddot_y = v->prrr_a_p_y - v->prrr_u_1_t;
+    v->prrr_S_ddot_in_axes3_x = v->axis_x_prrr_axes3_x*prrr_S_ddot_x -
+        v->axis_y_prrr_axes3_x*prrr_S_ddot_y;
+    v->prrr_S_ddot_in_axes3_y = v->axis_x_prrr_axes3_x*prrr_S_ddot_y +
+        v->axis_y_prrr_axes3_x*prrr_S_ddot_x;
+    /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real prrr_ydd_1 = A[3*w + j];
+    const real prrr_rel_in_axes3_x = v->prrr_w_2_t*prrr_ydd_1 + v->prrr_S_ddot_in_axes3_x -
+        v->prrr_bias_in_axes3_x;
+    const real prrr_rel_in_axes3_y = v->prrr_S_ddot_in_axes3_y -
+        v->prrr_e_1_in_axes3_y*prrr_ydd_1 - v->prrr_bias_in_axes3_y;
+    /* (prrr-qdd_2) acceleration of joint 2 */
+    v->prrr_qdd_2_t = v->inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
+    /* (prrr-qdd_3) acceleration of joint 3 */
+    v->prrr_qdd_3 = m->prrr_w_3_in_axes3_y[i]*(prrr_rel_in_axes3_y +
+        v->prrr_qdd_2_t*v->prrr_r_2_in_axes3_x);
 }
 
 INLINE void stage_prrr_M_dynamics(const prepared *m, size_t i, values_prrr *v)
@@ -1632,18 +1654,33 @@ INLINE void stage_prrr_M_dynamics(const prepared *m, size_t i, values_prrr *v)
     /* (prrr-w_3) reciprocal vector 2 */
     const real prrr_w_3_in_axes3_x =
         v->inv_prrr_r_2_in_axes3_y*v->prrr_r_2_in_axes3_x*m->prrr_w_3_in_axes3_y[i];
-    /* (prrr-P_c_2) force that accelerates joint 2, per unit */
-    const real prrr_P_c_2_in_axes0_x = v->prrr_c_2*m->prrr_h_2_in_spec2_x[i] -
-        m->prrr_h_2_in_spec2_y[i]*v->prrr_s_2;
     /* (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
     const real prrr_d_Gamma_3_t_2 = m->prrr_d_Gamma_3_t[i]*v->prrr_r_2_in_axes3_x;
     const real prrr_d_Gamma_3_in_axes3_x = -m->prrr_h_3_in_spec3_y[i] -
         v->inv_prrr_r_2_in_axes3_y*(m->prrr_J_3_in_spec3_zz[i] - prrr_d_Gamma_3_t_2);
+    /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
+       links' inertia and weight */
+    const real prrr_dy_1_Gamma_3_t =
+        m->prrr_J_3_in_spec3_zz[i]*m->prrr_w_3_in_axes3_y[i]*(v->prrr_e_1_in_axes3_y +
+        v->prrr_r_2_in_axes3_x*v->prrr_w_2_t_2);
+    const real prrr_dy_1_Gamma_3 = m->prrr_J_3_in_spec3_zz[i]*v->prrr_w_2_t_2 -
+        prrr_dy_1_Gamma_3_t;
+    /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+       links' inertia and weight */
+    const real prrr_dy_1_Gamma_2 = v->prrr_P_c_2_in_axes0_x +
+        m->prrr_Jc_2_in_axes2_zz[i]*v->prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t;
     /* (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     const real prrr_d_Gamma_2_in_axes3_x = -m->prrr_h_3_in_spec3_y[i] -
         v->inv_prrr_r_2_in_axes3_y*(m->prrr_Jc_2_in_axes2_zz[i] - prrr_d_Gamma_3_t_2);
+    /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+       inertia and weight */
+    const real prrr_dy_1_Gamma_1 = m->prrr_P_c_1_in_axes0_x[i] +
+        v->prrr_P_c_2_in_axes0_x*v->prrr_w_2_t_2;
+    /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*m->prrr_w_3_in_axes3_y[i];
     /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
     const real prrr_d_G_in_axes3_xx = prrr_d_Gamma_3_in_axes3_x*prrr_w_3_in_axes3_x -
@@ -1657,150 +1694,154 @@ INLINE void stage_prrr_M_dynamics(const prepared *m, size_t i, values_prrr *v)
     const real prrr_Q_t = m->prrr_h_3_in_spec3_y[i]*(prrr_w_3_in_axes3_x -
         v->inv_prrr_r_2_in_axes3_y) - m->prrr_d_c_in_axes3_yy[i] - prrr_d_G_in_axes3_xx;
     const real prrr_Q_t_2 = R(0.5)*prrr_Q_t;
-    v->prrr_P_c_2_in_axes0_x = prrr_P_c_2_in_axes0_x;
-    v->prrr_d_Gamma_3_in_axes3_x = prrr_d_Gamma_3_in_axes3_x;
-    v->prrr_d_G_in_axes3_xx = prrr_d_G_in_axes3_xx;
-    v->prrr_d_G_in_axes3_xy = prrr_d_G_in_axes3_xy;
-    v->prrr_d_c_in_axes3_xy = prrr_d_c_in_axes3_xy;
-    v->prrr_Q_t_2 = prrr_Q_t_2;
+    const real prrr_Q_t_3 = v->axis_y_prrr_axes3_x*prrr_d_c_in_axes3_xy +
+        v->axis_x_prrr_axes3_x*prrr_Q_t_2;
+    const real prrr_Q_t_4 = v->axis_y_prrr_axes3_x*prrr_Q_t_2 -
+        v->axis_x_prrr_axes3_x*prrr_d_c_in_axes3_xy;
+    v->prrr_Q_xx = -m->prrr_d_c_in_axes3_yy[i] - 2*v->axis_x_prrr_axes3_x*prrr_Q_t_3;
+    v->prrr_Q_xy = v->axis_x_prrr_axes3_x*prrr_Q_t_4 + v->axis_y_prrr_axes3_x*prrr_Q_t_3;
+    v->prrr_Q_yy = -m->prrr_d_c_in_axes3_yy[i] - 2*v->axis_y_prrr_axes3_x*prrr_Q_t_4;
+    /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
+       extra degree of freedom of joint 1 */
+    const real prrr_dy_1_P_1_t =
+        v->inv_prrr_r_2_in_axes3_y*v->prrr_w_2_t*(prrr_dy_1_G_in_axes3_y*v->prrr_r_2_in_axes3_x
+        - prrr_dy_1_Gamma_2) - prrr_dy_1_G_in_axes3_y*v->prrr_e_1_in_axes3_y;
+    v->prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 + prrr_dy_1_P_1_t;
+    /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
+       degree of freedom of joint 1 */
+    const real prrr_d_P_1_in_axes3_y = prrr_d_G_in_axes3_xy*v->prrr_w_2_t -
+        m->prrr_d_G_in_axes3_yy[i]*v->prrr_e_1_in_axes3_y;
+    const real prrr_d_P_1_in_axes3_x = prrr_d_G_in_axes3_xx*v->prrr_w_2_t -
+        v->inv_prrr_r_2_in_axes3_y*v->prrr_P_c_2_in_axes0_x -
+        prrr_d_Gamma_3_in_axes3_x*v->prrr_e_1_in_axes3_y*m->prrr_w_3_in_axes3_y[i];
+    v->prrr_d_P_1_x = v->axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x +
+        v->axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y;
+    v->prrr_d_P_1_y = v->axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
+        v->axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
+    /* (M_ta) coupling block of M */
+    v->prrr_M_ta_t = v->prrr_Q_xy*v->prrr_q_x - v->prrr_Q_xx*v->prrr_q_y;
+    v->prrr_M_ta_t_2 = v->prrr_Q_yy*v->prrr_q_x - v->prrr_Q_xy*v->prrr_q_y;
+    /* (M_aa) rotational block of M */
+    v->prrr_M_aa_t = v->prrr_M_ta_t_2*v->prrr_q_x - v->prrr_M_ta_t*v->prrr_q_y;
+    /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
+    v->prrr_M_ya_1_z = v->prrr_d_P_1_y*v->prrr_q_x - v->prrr_d_P_1_x*v->prrr_q_y;
 }
 
-INLINE void stage_prrr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_prrr *v)
+INLINE void stage_prrr_Z_dynamics(const prepared *m, size_t i, values_prrr *v)
 {
     /* (prrr-u_1) centripetal acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real prrr_u_1_x = -omega_z*v->prrr_S_dot_t_2;
-    const real prrr_u_1_t = omega_z*v->prrr_S_dot_t;
+    const real prrr_u_1_in_axes3_x = v->axis_x_prrr_axes3_x*v->prrr_u_1_x +
+        v->axis_y_prrr_axes3_x*v->prrr_u_1_t;
+    const real prrr_u_1_in_axes3_y = v->axis_y_prrr_axes3_x*v->prrr_u_1_x -
+        v->axis_x_prrr_axes3_x*v->prrr_u_1_t;
+    /* (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - v->prrr_bias_in_axes3_x;
+    const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y - v->prrr_bias_in_axes3_y;
+    /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real prrr_B_2_o_in_axes2_xy = v->inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
+    /* (prrr-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real prrr_alpha_3_o_in_axes3_z = m->prrr_w_3_in_axes3_y[i]*(prrr_rel_o_in_axes3_y +
+        prrr_B_2_o_in_axes2_xy*v->prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
     /* (prrr-f_2_o) remainder of: inertia force of link 2 less its weight */
-    const real prrr_g_in_axes2_x = m->prrr_acc_1_in_axes0_y[i]*v->prrr_c_2 +
-        m->prrr_g_in_axes0_x[i]*v->prrr_s_2;
-    const real prrr_g_in_axes2_y = v->prrr_c_2*m->prrr_g_in_axes0_x[i] -
-        m->prrr_acc_1_in_axes0_y[i]*v->prrr_s_2;
-    v->prrr_u_1_x = prrr_u_1_x;
-    v->prrr_u_1_t = prrr_u_1_t;
-    v->prrr_g_in_axes2_x = prrr_g_in_axes2_x;
-    v->prrr_g_in_axes2_y = prrr_g_in_axes2_y;
-}
-
-INLINE void stage_prrr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_prrr *v)
-{
-    /* (prrr-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_yx = s[1*w + j];
-    const real t_x = X[0*w + j];
-    const real prrr_S_x = t_x - m->prrr_base_point_x[i] + R_xx*m->prrr_platform_point_x[i] -
-        R_yx*m->prrr_platform_point_y[i];
-    const real t_y = X[1*w + j];
-    const real prrr_S_y = t_y - m->prrr_base_point_y[i] + R_xx*m->prrr_platform_point_y[i] +
-        R_yx*m->prrr_platform_point_x[i];
-    const real prrr_S_in_axes0_y = -prrr_S_x*m->prrr_base_frame_xx[i] -
-        prrr_S_y*m->prrr_base_frame_yx[i];
-    /* (prrr-x_2) from the origin of joint 2 to the connection point */
-    const real prrr_y_1_extra = X[3*w + j];
-    const real prrr_x_2_in_axes0_x = prrr_S_x*m->prrr_base_frame_xy[i] - prrr_y_1_extra +
-        prrr_S_y*m->prrr_base_frame_yy[i];
-    /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 2 */
-    const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
-        prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-    const real prrr_Kd_2 = m->prrr_Kd_2_t[i] - m->prrr_Kd_2_t_2[i] + R(0.5)*prrr_Kd_2_t_3;
-    /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-    const real prrr_Kc_2 = -prrr_S_in_axes0_y*m->prrr_joint3_offset_x[i];
-    /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-    const real prrr_Ks_2 = m->prrr_joint3_offset_x[i]*prrr_x_2_in_axes0_x;
-    /* (prrr-rho2_2) squared amplitude */
-    const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
-    /* (prrr-disc_2) discriminant */
-    const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
-    /* (prrr-root_2) root, with the sign of the branch */
-    const real prrr_root_2 = m->prrr_branch_2[i]*root(prrr_disc_2);
-    /* (prrr-q_2) displacement of joint 2 */
-    const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
-    /* (prrr-x_3) from the origin of joint 3 to the connection point */
-    const real prrr_x_3_in_axes2_x =
-        m->inv_prrr_size_t[i]*prrr_Kd_2*m->prrr_joint3_offset_x[i] -
-        m->prrr_joint3_offset_x[i];
-    v->prrr_Kd_2 = prrr_Kd_2;
-    v->prrr_Kc_2 = prrr_Kc_2;
-    v->prrr_Ks_2 = prrr_Ks_2;
-    v->prrr_rho2_2 = prrr_rho2_2;
-    v->prrr_disc_2 = prrr_disc_2;
-    v->prrr_root_2 = prrr_root_2;
-    v->inv_prrr_rho2_2 = inv_prrr_rho2_2;
-    v->prrr_x_3_in_axes2_x = prrr_x_3_in_axes2_x;
+    const real prrr_f_2_o_in_axes2_x = v->prrr_f_2_t -
+        v->prrr_g_in_axes2_x*m->prrr_link2_mass[i] +
+        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_y[i];
+    const real prrr_f_2_o_in_axes2_y = v->prrr_f_2_t_2 -
+        v->prrr_g_in_axes2_y*m->prrr_link2_mass[i] -
+        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_x[i];
+    /* (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x - v->prrr_g_in_axes3_x;
+    const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y - v->prrr_g_in_axes3_y;
+    /* (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real prrr_mu_3_o_in_axes3_z = prrr_acc_3_o_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
+        prrr_acc_3_o_in_axes3_x*m->prrr_h_3_in_spec3_y[i] +
+        m->prrr_J_3_in_spec3_zz[i]*prrr_alpha_3_o_in_axes3_z;
+    /* (prrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real prrr_mu_2_o_in_axes2_z = v->prrr_g_in_axes2_x*m->prrr_h_2_in_spec2_y[i] -
+        v->prrr_g_in_axes2_y*m->prrr_h_2_in_spec2_x[i] -
+        prrr_B_2_o_in_axes2_xy*m->prrr_J_2_in_spec2_zz[i];
+    /* (prrr-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
+    /* (prrr-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
+       */
+    const real prrr_T_1_o_in_axes0_x = m->prrr_f_1_o_in_axes0_x[i] +
+        v->prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*v->prrr_s_2;
+    /* (prrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*m->prrr_w_3_in_axes3_y[i];
+    const real prrr_G_o_in_axes3_x =
+        v->inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*v->prrr_r_2_in_axes3_x -
+        prrr_N_2_o_in_axes2_z);
+    /* (prrr-c_o) remainder of: leg force on the platform without actuation and without the mass at
+       the connection point */
+    const real prrr_c_o_in_axes3_x = v->prrr_c_t +
+        prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_y[i] - prrr_G_o_in_axes3_x;
+    const real prrr_c_o_in_axes3_y = v->prrr_c_t_2 -
+        prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_x[i] - prrr_G_o_in_axes3_y;
+    /* (prrr-U) velocity and gravity terms of the leg force */
+    v->prrr_U_x = -v->axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y -
+        v->axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x;
+    v->prrr_U_y = v->axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
+        v->axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
+    /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+       joint 1 */
+    const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*v->prrr_w_2_t -
+        prrr_G_o_in_axes3_y*v->prrr_e_1_in_axes3_y;
+    v->prrr_P_1_o = prrr_T_1_o_in_axes0_x + prrr_P_1_o_t;
+    /* (Z_a) rotational part of Z */
+    v->prrr_Z_a_t = v->prrr_U_y*v->prrr_q_x - v->prrr_U_x*v->prrr_q_y;
 }
 
 INLINE void stage_prrr_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
     *A, values_prrr *v)
 {
-    /* (prrr-S_ddot) acceleration of the connection point */
-    const real prrr_S_ddot_in_axes3_x = v->axis_x_prrr_axes3_x*v->prrr_S_ddot_x -
-        v->axis_y_prrr_axes3_x*v->prrr_S_ddot_y;
-    const real prrr_S_ddot_in_axes3_y = v->axis_x_prrr_axes3_x*v->prrr_S_ddot_y +
-        v->axis_y_prrr_axes3_x*v->prrr_S_ddot_x;
-    /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real prrr_ydd_1 = A[3*w + j];
-    const real prrr_rel_in_axes3_x = v->prrr_w_2_t*prrr_ydd_1 + prrr_S_ddot_in_axes3_x -
-        v->prrr_bias_in_axes3_x;
-    const real prrr_rel_in_axes3_y = prrr_S_ddot_in_axes3_y -
-        v->prrr_e_1_in_axes3_y*prrr_ydd_1 -
-        v->prrr_W_2_in_axes2_xx*m->prrr_joint3_offset_x[i]*v->prrr_s_3_t;
-    /* (prrr-B_2) acceleration tensor of link 2 */
-    const real prrr_B_2_in_axes2_xy = v->inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
     /* (prrr-alpha_3) angular acceleration of link 3 */
-    const real prrr_alpha_3_in_axes3_z = m->prrr_w_3_in_axes3_y[i]*(prrr_rel_in_axes3_y +
-        prrr_B_2_in_axes2_xy*v->prrr_r_2_in_axes3_x) - prrr_B_2_in_axes2_xy;
+    const real prrr_alpha_3_in_axes3_z = v->prrr_qdd_3 - v->prrr_qdd_2_t;
     /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real prrr_acc_2_in_axes2_x = v->prrr_s_2*prrr_ydd_1 -
-        m->prrr_acc_1_in_axes0_y[i]*v->prrr_c_2 - m->prrr_g_in_axes0_x[i]*v->prrr_s_2;
-    const real prrr_acc_2_in_axes2_y = m->prrr_acc_1_in_axes0_y[i]*v->prrr_s_2 +
-        v->prrr_c_2*prrr_ydd_1 - v->prrr_c_2*m->prrr_g_in_axes0_x[i];
+    const real prrr_ydd_1 = A[3*w + j];
+    v->prrr_acc_2_in_axes2_x = v->prrr_s_2*prrr_ydd_1 - v->prrr_g_in_axes2_x;
+    v->prrr_acc_2_in_axes2_y = v->prrr_c_2*prrr_ydd_1 - v->prrr_g_in_axes2_y;
     /* (prrr-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real prrr_acc_3_in_axes3_x = v->axis_y_prrr_axes3_x*m->gravity_y -
-        v->axis_x_prrr_axes3_x*m->gravity_x + prrr_S_ddot_in_axes3_x;
-    const real prrr_acc_3_in_axes3_y = prrr_S_ddot_in_axes3_y -
-        v->axis_x_prrr_axes3_x*m->gravity_y - v->axis_y_prrr_axes3_x*m->gravity_x;
+    v->prrr_acc_3_in_axes3_x = v->prrr_S_ddot_in_axes3_x - v->prrr_g_in_axes3_x;
+    v->prrr_acc_3_in_axes3_y = v->prrr_S_ddot_in_axes3_y - v->prrr_g_in_axes3_y;
     /* (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-    const real prrr_mu_3_in_axes3_z = prrr_acc_3_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
-        prrr_acc_3_in_axes3_x*m->prrr_h_3_in_spec3_y[i] +
+    const real prrr_mu_3_in_axes3_z = v->prrr_acc_3_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
+        v->prrr_acc_3_in_axes3_x*m->prrr_h_3_in_spec3_y[i] +
         m->prrr_J_3_in_spec3_zz[i]*prrr_alpha_3_in_axes3_z;
     /* (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real prrr_mu_2_in_axes2_z = prrr_acc_2_in_axes2_y*m->prrr_h_2_in_spec2_x[i] -
-        prrr_acc_2_in_axes2_x*m->prrr_h_2_in_spec2_y[i] -
-        prrr_B_2_in_axes2_xy*m->prrr_J_2_in_spec2_zz[i];
+    const real prrr_mu_2_in_axes2_z = v->prrr_acc_2_in_axes2_y*m->prrr_h_2_in_spec2_x[i] -
+        v->prrr_acc_2_in_axes2_x*m->prrr_h_2_in_spec2_y[i] -
+        m->prrr_J_2_in_spec2_zz[i]*v->prrr_qdd_2_t;
     /* (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real prrr_N_2_in_axes2_z = prrr_mu_2_in_axes2_z + prrr_mu_3_in_axes3_z;
     /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*m->prrr_w_3_in_axes3_y[i];
+    v->prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*m->prrr_w_3_in_axes3_y[i];
+    v->prrr_G_in_axes3_x =
+        v->inv_prrr_r_2_in_axes3_y*(v->prrr_G_in_axes3_y*v->prrr_r_2_in_axes3_x -
+        prrr_N_2_in_axes2_z);
     /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real prrr_c_in_axes3_y = v->prrr_W_3_t*m->prrr_h_3_in_spec3_y[i] -
-        prrr_alpha_3_in_axes3_z*m->prrr_h_3_in_spec3_x[i] - prrr_G_in_axes3_y;
-    v->prrr_B_2_in_axes2_xy = prrr_B_2_in_axes2_xy;
-    v->prrr_alpha_3_in_axes3_z = prrr_alpha_3_in_axes3_z;
-    v->prrr_acc_2_in_axes2_x = prrr_acc_2_in_axes2_x;
-    v->prrr_acc_2_in_axes2_y = prrr_acc_2_in_axes2_y;
-    v->prrr_acc_3_in_axes3_x = prrr_acc_3_in_axes3_x;
-    v->prrr_acc_3_in_axes3_y = prrr_acc_3_in_axes3_y;
-    v->prrr_N_2_in_axes2_z = prrr_N_2_in_axes2_z;
-    v->prrr_G_in_axes3_y = prrr_G_in_axes3_y;
-    v->prrr_c_in_axes3_y = prrr_c_in_axes3_y;
+    v->prrr_c_in_axes3_x = v->prrr_c_t + prrr_alpha_3_in_axes3_z*m->prrr_h_3_in_spec3_y[i] -
+        v->prrr_G_in_axes3_x;
+    v->prrr_c_in_axes3_y = v->prrr_c_t_2 - prrr_alpha_3_in_axes3_z*m->prrr_h_3_in_spec3_x[i] -
+        v->prrr_G_in_axes3_y;
 }
 
 typedef struct {
     real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2,
-        rrr_r_1_in_axes1_y, rrr_r_1_in_axes1_x, rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, rrr_w_1_t,
-        rrr_w_1_t_2, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, inv_rrr_r_1_in_axes2_y, rrr_w_1_x,
-        rrr_w_1_y, rrr_qd_1_t_2, rrr_a_p_x, rrr_a_p_y, rrr_S_dot_t, rrr_S_dot_t_2, rrr_S_dot_x,
-        rrr_S_dot_y, rrr_W_1_t, rrr_W_2_t, rrr_bias_in_axes2_x, rrr_S_ddot_x, rrr_S_ddot_y,
-        rrr_H_a_1_z, rrr_w_2_in_axes2_x, rrr_d_Gamma_2_in_axes2_x, rrr_d_Gamma_1_in_axes2_x,
-        rrr_d_c_in_axes2_xy, rrr_Kd_1, rrr_Kc_1, rrr_Ks_1, rrr_root_1, inv_rrr_rho2_1,
-        rrr_x_2_in_axes1_x, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x,
-        rrr_c_in_axes2_y;
+        rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x,
+        inv_rrr_r_1_in_axes2_y, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
+        rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x, rrr_a_p_y,
+        rrr_qd_1_t, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x, rrr_c_t,
+        rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx,
+        rrr_Q_xy, rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y, rrr_Z_a_t,
+        rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1809,12 +1850,12 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rrr_q_x = R_xx*m->rrr_platform_point_x[i] - R_yx*m->rrr_platform_point_y[i];
-    const real rrr_q_y = R_xx*m->rrr_platform_point_y[i] + R_yx*m->rrr_platform_point_x[i];
+    v->rrr_q_x = R_xx*m->rrr_platform_point_x[i] - R_yx*m->rrr_platform_point_y[i];
+    v->rrr_q_y = R_xx*m->rrr_platform_point_y[i] + R_yx*m->rrr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + rrr_q_x;
+    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + v->rrr_q_x;
     const real t_y = X[1*w + j];
-    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + rrr_q_y;
+    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + v->rrr_q_y;
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
@@ -1826,63 +1867,52 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
         rrr_S_y*m->rrr_base_frame_yy[i]);
     /* (rrr-rho2_1) squared amplitude */
-    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+    v->rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
-    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+    v->rrr_disc_1 = v->rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
     /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
+    const real rrr_root_1 = m->rrr_branch_1[i]*root(v->rrr_disc_1);
     /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-    const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+    const real inv_rrr_rho2_1 = 1/v->rrr_rho2_1;
+    v->rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
+    v->rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real rrr_c_2 =
-        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
+    v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rrr_s_2 =
+    v->rrr_s_2 =
         -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*rrr_s_2;
+    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*v->rrr_s_2;
     const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
-        rrr_c_2*m->rrr_platform_joint_offset_x[i];
-    const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-    const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        v->rrr_c_2*m->rrr_platform_joint_offset_x[i];
+    v->rrr_r_1_in_axes2_x = v->rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*v->rrr_s_2;
+    v->rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*v->rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
-    const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
+    const real rrr_w_1_t = v->rrr_c_2*v->rrr_s_1 + v->rrr_c_1*v->rrr_s_2;
+    const real rrr_w_1_t_2 = v->rrr_c_1*v->rrr_c_2 - v->rrr_s_1*v->rrr_s_2;
+    v->axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_w_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
+    v->axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_yx[i]*rrr_w_1_t;
-    const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-    const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-    const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-    /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-    v->rrr_q_x = rrr_q_x;
-    v->rrr_q_y = rrr_q_y;
-    v->rrr_rho2_1 = rrr_rho2_1;
-    v->rrr_disc_1 = rrr_disc_1;
-    v->rrr_c_1 = rrr_c_1;
-    v->rrr_s_1 = rrr_s_1;
-    v->rrr_c_2 = rrr_c_2;
-    v->rrr_s_2 = rrr_s_2;
-    v->rrr_r_1_in_axes1_y = rrr_r_1_in_axes1_y;
-    v->rrr_r_1_in_axes1_x = rrr_r_1_in_axes1_x;
-    v->rrr_r_1_in_axes2_x = rrr_r_1_in_axes2_x;
-    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
-    v->rrr_w_1_t = rrr_w_1_t;
-    v->rrr_w_1_t_2 = rrr_w_1_t_2;
-    v->axis_y_rrr_axes2_x = axis_y_rrr_axes2_x;
-    v->axis_x_rrr_axes2_x = axis_x_rrr_axes2_x;
-    v->inv_rrr_r_1_in_axes2_y = inv_rrr_r_1_in_axes2_y;
-    v->rrr_w_1_x = rrr_w_1_x;
-    v->rrr_w_1_y = rrr_w_1_y;
-    v->rrr_qd_1_t_2 = rrr_qd_1_t_2;
+    v->inv_rrr_r_1_in_axes2_y = 1/v->rrr_r_1_in_axes2_y;
+    v->rrr_w_1_x = -v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
+    v->rrr_w_1_y = v->axis_y_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
+    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->rrr_g_in_axes2_x = v->axis_x_rrr_axes2_x*m->gravity_x -
+        v->axis_y_rrr_axes2_x*m->gravity_y;
+    v->rrr_g_in_axes2_y = v->axis_x_rrr_axes2_x*m->gravity_y +
+        v->axis_y_rrr_axes2_x*m->gravity_x;
+    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    v->rrr_g_in_axes1_x = v->rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v->rrr_s_1;
+    v->rrr_g_in_axes1_y = v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1;
+    v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
+        v->rrr_g_in_axes1_x*m->rrr_h_1_in_spec1_y[i];
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    v->rrr_H_a_1_z = v->rrr_q_x*v->rrr_w_1_y - v->rrr_q_y*v->rrr_w_1_x;
 }
 
 INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
@@ -1890,11 +1920,9 @@ INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
     /* (rrr-a_p) acceleration of the connection point without its centripetal part */
     const real alpha_z = A[2*w + j];
     const real t_ddot_x = A[0*w + j];
-    const real rrr_a_p_x = t_ddot_x - alpha_z*v->rrr_q_y;
+    v->rrr_a_p_x = t_ddot_x - alpha_z*v->rrr_q_y;
     const real t_ddot_y = A[1*w + j];
-    const real rrr_a_p_y = t_ddot_y + alpha_z*v->rrr_q_x;
-    v->rrr_a_p_x = rrr_a_p_x;
-    v->rrr_a_p_y = rrr_a_p_y;
+    v->rrr_a_p_y = t_ddot_y + alpha_z*v->rrr_q_x;
 }
 
 INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1909,55 +1937,47 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real t_dot_y = V[1*w + j];
     const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_2;
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
+    v->rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
         v->axis_y_rrr_axes2_x*rrr_S_dot_y);
+    /* (rrr-qd_2) rate of joint 2 */
+    v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
+        v->axis_y_rrr_axes2_x*rrr_S_dot_x + v->rrr_qd_1_t*v->rrr_r_1_in_axes2_x);
     /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t;
+    const real rrr_W_1_t = v->rrr_qd_1_t*v->rrr_qd_1_t;
     /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z =
-        m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
-        v->axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t*v->rrr_r_1_in_axes2_x) - rrr_qd_1_t;
+    const real rrr_omega_2_in_axes2_z = v->rrr_qd_2 - v->rrr_qd_1_t;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+    /* (rrr-u_1) centripetal acceleration of the connection point */
+    v->rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
+    v->rrr_u_1_t = omega_z*rrr_S_dot_t;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
+    v->rrr_bias_in_axes2_y = rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
+    v->rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
         rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
-    v->rrr_S_dot_t = rrr_S_dot_t;
-    v->rrr_S_dot_t_2 = rrr_S_dot_t_2;
-    v->rrr_S_dot_x = rrr_S_dot_x;
-    v->rrr_S_dot_y = rrr_S_dot_y;
-    v->rrr_W_1_t = rrr_W_1_t;
-    v->rrr_W_2_t = rrr_W_2_t;
-    v->rrr_bias_in_axes2_x = rrr_bias_in_axes2_x;
+    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->rrr_c_t = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i];
+    v->rrr_c_t_2 = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i];
 }
 
-INLINE void stage_rrr_A_V_X(size_t w, size_t j, const real *V, values_rrr *v)
+INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-S_ddot) acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real rrr_S_ddot_x = v->rrr_a_p_x - omega_z*v->rrr_S_dot_t_2;
-    const real rrr_S_ddot_y = v->rrr_a_p_y - omega_z*v->rrr_S_dot_t;
-    v->rrr_S_ddot_x = rrr_S_ddot_x;
-    v->rrr_S_ddot_y = rrr_S_ddot_y;
-}
-
-INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
-{
-    /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes2_y = v->rrr_c_2*m->rrr_platform_joint_offset_x[i]*v->rrr_s_2 -
-        v->rrr_r_1_in_axes1_x*v->rrr_s_2;
-    /* (rrr-w_1) reciprocal vector 1 */
-    const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-    const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(m->rrr_base_frame_yy[i]*v->rrr_w_1_t_2 -
-        m->rrr_base_frame_yx[i]*v->rrr_w_1_t);
-    const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(m->rrr_base_frame_xy[i]*v->rrr_w_1_t_2 -
-        m->rrr_base_frame_xx[i]*v->rrr_w_1_t);
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    const real rrr_H_a_1_z = v->rrr_q_x*rrr_w_1_y - v->rrr_q_y*rrr_w_1_x;
-    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
-    v->rrr_w_1_x = rrr_w_1_x;
-    v->rrr_w_1_y = rrr_w_1_y;
-    v->rrr_H_a_1_z = rrr_H_a_1_z;
+    const real rrr_S_ddot_x = v->rrr_a_p_x + v->rrr_u_1_x;
+    const real rrr_S_ddot_y = v->rrr_a_p_y - v->rrr_u_1_t;
+    v->rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*rrr_S_ddot_x -
+        v->axis_y_rrr_axes2_x*rrr_S_ddot_y;
+    v->rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*rrr_S_ddot_y +
+        v->axis_y_rrr_axes2_x*rrr_S_ddot_x;
+    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_rel_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
+    const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_bias_in_axes2_y;
+    /* (rrr-qdd_1) acceleration of joint 1 */
+    v->rrr_qdd_1_t = v->inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+    /* (rrr-qdd_2) acceleration of joint 2 */
+    v->rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
+        v->rrr_qdd_1_t*v->rrr_r_1_in_axes2_x);
 }
 
 INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
@@ -1978,85 +1998,90 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
        without the mass at the connection point */
     const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*m->rrr_d_Gamma_2_in_axes2_y[i]
         - m->rrr_d_phi_2_in_axes2_xy[i] - m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
-    v->rrr_w_2_in_axes2_x = rrr_w_2_in_axes2_x;
-    v->rrr_d_Gamma_2_in_axes2_x = rrr_d_Gamma_2_in_axes2_x;
-    v->rrr_d_Gamma_1_in_axes2_x = rrr_d_Gamma_1_in_axes2_x;
-    v->rrr_d_c_in_axes2_xy = rrr_d_c_in_axes2_xy;
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = v->inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x -
+        m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x +
+        m->rrr_h_2_in_spec2_y[i]*(rrr_w_2_in_axes2_x - v->inv_rrr_r_1_in_axes2_y);
+    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+    const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
+        v->axis_x_rrr_axes2_x*rrr_Q_t_2;
+    const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
+        v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+    v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    /* (M_ta) coupling block of M */
+    v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
+    v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
+    /* (M_aa) rotational block of M */
+    v->rrr_M_aa_t = v->rrr_M_ta_t_2*v->rrr_q_x - v->rrr_M_ta_t*v->rrr_q_y;
 }
 
-INLINE void stage_rrr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_rrr *v)
+INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_yx = s[1*w + j];
-    const real t_x = X[0*w + j];
-    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + R_xx*m->rrr_platform_point_x[i] -
-        R_yx*m->rrr_platform_point_y[i];
-    const real t_y = X[1*w + j];
-    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + R_xx*m->rrr_platform_point_y[i] +
-        R_yx*m->rrr_platform_point_x[i];
-    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-       joint 1 */
-    const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
-    /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
-        rrr_S_y*m->rrr_base_frame_yx[i]);
-    /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
-        rrr_S_y*m->rrr_base_frame_yy[i]);
-    /* (rrr-rho2_1) squared amplitude */
-    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-    /* (rrr-disc_1) discriminant */
-    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-    /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
-    /* (rrr-q_1) displacement of joint 1 */
-    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-    /* (rrr-x_2) from the origin of joint 2 to the connection point */
-    const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
-        m->rrr_joint2_offset_x[i];
-    v->rrr_Kd_1 = rrr_Kd_1;
-    v->rrr_Kc_1 = rrr_Kc_1;
-    v->rrr_Ks_1 = rrr_Ks_1;
-    v->rrr_rho2_1 = rrr_rho2_1;
-    v->rrr_disc_1 = rrr_disc_1;
-    v->rrr_root_1 = rrr_root_1;
-    v->inv_rrr_rho2_1 = inv_rrr_rho2_1;
-    v->rrr_x_2_in_axes1_x = rrr_x_2_in_axes1_x;
+    /* (rrr-u_1) centripetal acceleration of the connection point */
+    const real rrr_u_1_in_axes2_x = v->axis_x_rrr_axes2_x*v->rrr_u_1_x +
+        v->axis_y_rrr_axes2_x*v->rrr_u_1_t;
+    const real rrr_u_1_in_axes2_y = v->axis_y_rrr_axes2_x*v->rrr_u_1_x -
+        v->axis_x_rrr_axes2_x*v->rrr_u_1_t;
+    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v->rrr_bias_in_axes2_x;
+    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - v->rrr_bias_in_axes2_y;
+    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+    const real rrr_B_1_o_in_axes1_xy = v->inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
+    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
+        rrr_B_1_o_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x - v->rrr_g_in_axes2_x;
+    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v->rrr_g_in_axes2_y;
+    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
+    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_mu_1_o_in_axes1_z = -v->rrr_mu_1_t_3 -
+        rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
+    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rrr_c_o_in_axes2_x = v->rrr_c_t +
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v->rrr_r_1_in_axes2_x -
+        rrr_N_1_o_in_axes1_z);
+    const real rrr_c_o_in_axes2_y = v->rrr_c_t_2 -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
+    /* (rrr-U) velocity and gravity terms of the leg force */
+    v->rrr_U_x = -v->axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
+    v->rrr_U_y = v->axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    /* (Z_a) rotational part of Z */
+    v->rrr_Z_a_t = v->rrr_U_y*v->rrr_q_x - v->rrr_U_x*v->rrr_q_y;
 }
 
 INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 {
-    /* (rrr-S_ddot) acceleration of the connection point */
-    const real rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*v->rrr_S_ddot_x -
-        v->axis_y_rrr_axes2_x*v->rrr_S_ddot_y;
-    const real rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*v->rrr_S_ddot_y +
-        v->axis_y_rrr_axes2_x*v->rrr_S_ddot_x;
-    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
-        v->rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
-    /* (rrr-B_1) acceleration tensor of link 1 */
-    const real rrr_B_1_in_axes1_xy = v->inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
     /* (rrr-alpha_2) angular acceleration of link 2 */
-    const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
-        rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
+    const real rrr_alpha_2_in_axes2_z = v->rrr_qdd_2 - v->rrr_qdd_1_t;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_in_axes2_x = v->axis_y_rrr_axes2_x*m->gravity_y -
-        v->axis_x_rrr_axes2_x*m->gravity_x + rrr_S_ddot_in_axes2_x;
-    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
-        v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
+    v->rrr_acc_2_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_g_in_axes2_x;
+    v->rrr_acc_2_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_g_in_axes2_y;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_mu_2_in_axes2_z = rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+    const real rrr_mu_2_in_axes2_z = v->rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        v->rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v->rrr_s_1) -
-        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1)
-        - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
+    const real rrr_mu_1_in_axes1_z = -v->rrr_mu_1_t_3 -
+        m->rrr_J_1_in_spec1_zz[i]*v->rrr_qdd_1_t;
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
@@ -2065,16 +2090,11 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
     const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_in_axes2_x = v->rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
+    v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
         rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_in_axes2_y;
-    v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
-    v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
-    v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
-    v->rrr_c_in_axes2_y = rrr_c_in_axes2_y;
+    v->rrr_c_in_axes2_y = v->rrr_c_t_2 - rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] -
+        rrr_G_in_axes2_y;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
@@ -2094,9 +2114,10 @@ INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *
     *s)
 {
     stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
-    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->f_p_t - m->Z_p_t;
+    const real Z_p_y = v->f_p_t_2 - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[4*w + k] = Z_p_x;
@@ -2111,167 +2132,48 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, 
     stage_prrr_X(m, w, i, j, s, X, &v);
     stage_prrr_V_X(m, w, i, j, V, &v);
     stage_prrr_M_dynamics(m, i, &v);
-    stage_prrr_Z_dynamics(m, w, i, j, V, &v);
-    /* (prrr-w_2) reciprocal vector 1 */
-    const real prrr_w_2_t_2 = -v.inv_prrr_r_2_in_axes3_y*v.prrr_w_2_t;
-    /* (prrr-u_1) centripetal acceleration of the connection point */
-    const real prrr_u_1_in_axes3_x = v.axis_x_prrr_axes3_x*v.prrr_u_1_x +
-        v.axis_y_prrr_axes3_x*v.prrr_u_1_t;
-    const real prrr_u_1_in_axes3_y = v.axis_y_prrr_axes3_x*v.prrr_u_1_x -
-        v.axis_x_prrr_axes3_x*v.prrr_u_1_t;
-    /* (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - v.prrr_bias_in_axes3_x;
-    const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y -
-        v.prrr_W_2_in_axes2_xx*m->prrr_joint3_offset_x[i]*v.prrr_s_3_t;
-    /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real prrr_B_2_o_in_axes2_xy = v.inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
-    /* (prrr-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real prrr_alpha_3_o_in_axes3_z = m->prrr_w_3_in_axes3_y[i]*(prrr_rel_o_in_axes3_y +
-        prrr_B_2_o_in_axes2_xy*v.prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
-    /* (prrr-f_2_o) remainder of: inertia force of link 2 less its weight */
-    const real prrr_f_2_o_in_axes2_x = v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i] -
-        v.prrr_g_in_axes2_x*m->prrr_link2_mass[i] +
-        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_y[i];
-    const real prrr_f_2_o_in_axes2_y = v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_y[i] -
-        v.prrr_g_in_axes2_y*m->prrr_link2_mass[i] -
-        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_x[i];
-    /* (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real prrr_acc_3_o_in_axes3_x = v.axis_y_prrr_axes3_x*m->gravity_y -
-        v.axis_x_prrr_axes3_x*m->gravity_x + prrr_u_1_in_axes3_x;
-    const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y -
-        v.axis_x_prrr_axes3_x*m->gravity_y - v.axis_y_prrr_axes3_x*m->gravity_x;
-    /* (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-       reference points */
-    const real prrr_mu_3_o_in_axes3_z = prrr_acc_3_o_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
-        prrr_acc_3_o_in_axes3_x*m->prrr_h_3_in_spec3_y[i] +
-        m->prrr_J_3_in_spec3_zz[i]*prrr_alpha_3_o_in_axes3_z;
-    /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
-       links' inertia and weight */
-    const real prrr_dy_1_Gamma_3_t =
-        m->prrr_J_3_in_spec3_zz[i]*m->prrr_w_3_in_axes3_y[i]*(v.prrr_e_1_in_axes3_y +
-        v.prrr_r_2_in_axes3_x*prrr_w_2_t_2);
-    const real prrr_dy_1_Gamma_3 = m->prrr_J_3_in_spec3_zz[i]*prrr_w_2_t_2 -
-        prrr_dy_1_Gamma_3_t;
-    /* (prrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real prrr_mu_2_o_in_axes2_z = v.prrr_g_in_axes2_x*m->prrr_h_2_in_spec2_y[i] -
-        v.prrr_g_in_axes2_y*m->prrr_h_2_in_spec2_x[i] -
-        prrr_B_2_o_in_axes2_xy*m->prrr_J_2_in_spec2_zz[i];
-    /* (prrr-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-       connection point left out */
-    const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
-    /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-       links' inertia and weight */
-    const real prrr_dy_1_Gamma_2 = v.prrr_P_c_2_in_axes0_x +
-        m->prrr_Jc_2_in_axes2_zz[i]*prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t;
-    /* (prrr-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
-       */
-    const real prrr_T_1_o_in_axes0_x = m->prrr_f_1_o_in_axes0_x[i] +
-        v.prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*v.prrr_s_2;
-    /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
-       inertia and weight */
-    const real prrr_dy_1_Gamma_1 = m->prrr_P_c_1_in_axes0_x[i] +
-        v.prrr_P_c_2_in_axes0_x*prrr_w_2_t_2;
-    /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*m->prrr_w_3_in_axes3_y[i];
-    /* (prrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*m->prrr_w_3_in_axes3_y[i];
-    const real prrr_G_o_in_axes3_x =
-        v.inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*v.prrr_r_2_in_axes3_x -
-        prrr_N_2_o_in_axes2_z);
-    /* (prrr-c_o) remainder of: leg force on the platform without actuation and without the mass at
-       the connection point */
-    const real prrr_c_o_in_axes3_x = v.prrr_W_3_t*m->prrr_h_3_in_spec3_x[i] +
-        prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_y[i] - prrr_G_o_in_axes3_x;
-    const real prrr_c_o_in_axes3_y = v.prrr_W_3_t*m->prrr_h_3_in_spec3_y[i] -
-        prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_x[i] - prrr_G_o_in_axes3_y;
-    /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real prrr_Q_t_3 = v.axis_y_prrr_axes3_x*v.prrr_d_c_in_axes3_xy +
-        v.axis_x_prrr_axes3_x*v.prrr_Q_t_2;
-    const real prrr_Q_t_4 = v.axis_y_prrr_axes3_x*v.prrr_Q_t_2 -
-        v.axis_x_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
-    const real prrr_Q_xx = -m->prrr_d_c_in_axes3_yy[i] - 2*v.axis_x_prrr_axes3_x*prrr_Q_t_3;
-    const real prrr_Q_xy = v.axis_x_prrr_axes3_x*prrr_Q_t_4 +
-        v.axis_y_prrr_axes3_x*prrr_Q_t_3;
-    const real prrr_Q_yy = -m->prrr_d_c_in_axes3_yy[i] - 2*v.axis_y_prrr_axes3_x*prrr_Q_t_4;
-    /* (prrr-U) velocity and gravity terms of the leg force */
-    const real prrr_U_x = -v.axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y -
-        v.axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x;
-    const real prrr_U_y = v.axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
-        v.axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
-    /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
-       extra degree of freedom of joint 1 */
-    const real prrr_dy_1_P_1_t =
-        v.inv_prrr_r_2_in_axes3_y*v.prrr_w_2_t*(prrr_dy_1_G_in_axes3_y*v.prrr_r_2_in_axes3_x -
-        prrr_dy_1_Gamma_2) - prrr_dy_1_G_in_axes3_y*v.prrr_e_1_in_axes3_y;
-    const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 + prrr_dy_1_P_1_t;
-    /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
-       degree of freedom of joint 1 */
-    const real prrr_d_P_1_in_axes3_y = v.prrr_d_G_in_axes3_xy*v.prrr_w_2_t -
-        m->prrr_d_G_in_axes3_yy[i]*v.prrr_e_1_in_axes3_y;
-    const real prrr_d_P_1_in_axes3_x = v.prrr_d_G_in_axes3_xx*v.prrr_w_2_t -
-        v.inv_prrr_r_2_in_axes3_y*v.prrr_P_c_2_in_axes0_x -
-        v.prrr_d_Gamma_3_in_axes3_x*v.prrr_e_1_in_axes3_y*m->prrr_w_3_in_axes3_y[i];
-    const real prrr_d_P_1_x = v.axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x +
-        v.axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y;
-    const real prrr_d_P_1_y = v.axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
-        v.axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
+    stage_prrr_Z_dynamics(m, i, &v);
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v.prrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.prrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.prrr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v.prrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.prrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v.prrr_M_aa_t);  /* M_aa_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[6*count + k], add, v.prrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, v.prrr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[8*count + k], add, v.prrr_Z_a_t);  /* Z_a_z_of_legs */
     /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
        joint 1 */
-    const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*v.prrr_w_2_t -
-        prrr_G_o_in_axes3_y*v.prrr_e_1_in_axes3_y;
-    const real prrr_P_1_o = prrr_T_1_o_in_axes0_x + prrr_P_1_o_t;
-    /* (M_ta) coupling block of M */
-    const real prrr_M_ta_t = prrr_Q_xy*v.prrr_q_x - prrr_Q_xx*v.prrr_q_y;
-    const real prrr_M_ta_t_2 = prrr_Q_yy*v.prrr_q_x - prrr_Q_xy*v.prrr_q_y;
-    /* (M_aa) rotational block of M */
-    const real prrr_M_aa_t = prrr_M_ta_t_2*v.prrr_q_x - prrr_M_ta_t*v.prrr_q_y;
-    /* (Z_a) rotational part of Z */
-    const real prrr_Z_a_t = prrr_U_y*v.prrr_q_x - prrr_U_x*v.prrr_q_y;
+    o[0*count + k] = v.prrr_P_1_o;
+    /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
+       degree of freedom of joint 1 */
+    o[1*count + k] = v.prrr_d_P_1_x;
+    o[2*count + k] = v.prrr_d_P_1_x;
+    o[3*count + k] = v.prrr_d_P_1_y;
+    o[4*count + k] = v.prrr_d_P_1_y;
     /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
-    const real prrr_M_ya_1_z = prrr_d_P_1_y*v.prrr_q_x - prrr_d_P_1_x*v.prrr_q_y;
-    /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-    const real prrr_H_a_2_z = v.prrr_q_x*v.prrr_w_2_y - v.prrr_q_y*v.prrr_w_2_x;
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, prrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, prrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, prrr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, prrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, prrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, prrr_M_aa_t);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[6*count + k], add, prrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, prrr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[8*count + k], add, prrr_Z_a_t);  /* Z_a_z_of_legs */
-    /* (prrr-P_1_o) */
-    o[0*count + k] = prrr_P_1_o;
-    /* (prrr-d_P_1) */
-    o[1*count + k] = prrr_d_P_1_x;
-    o[2*count + k] = prrr_d_P_1_x;
-    o[3*count + k] = prrr_d_P_1_y;
-    o[4*count + k] = prrr_d_P_1_y;
-    /* (prrr-M_ya_1) */
-    o[5*count + k] = prrr_M_ya_1_z;
-    o[6*count + k] = prrr_M_ya_1_z;
-    /* (prrr-dy_1_P_1) */
-    o[7*count + k] = prrr_dy_1_P_1;
+    o[5*count + k] = v.prrr_M_ya_1_z;
+    o[6*count + k] = v.prrr_M_ya_1_z;
+    /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
+       extra degree of freedom of joint 1 */
+    o[7*count + k] = v.prrr_dy_1_P_1;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     o[8*count + k] = 1;
-    /* (prrr-w_2) */
+    /* (prrr-w_2) reciprocal vector 1 */
     o[9*count + k] = v.prrr_w_2_x;
     o[10*count + k] = v.prrr_w_2_y;
-    /* (prrr-H_a_2) */
-    o[11*count + k] = prrr_H_a_2_z;
+    /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+    o[11*count + k] = v.prrr_H_a_2_z;
     /* (prrr-w_2) */
-    o[12*count + k] = prrr_w_2_t_2;
-    o[15*count + k] = ((prrr_P_1_o + prrr_d_P_1_x) + (prrr_d_P_1_y + prrr_M_ya_1_z)) +
-        ((prrr_dy_1_P_1 + v.prrr_w_2_x) + (v.prrr_w_2_y + (prrr_H_a_2_z + prrr_w_2_t_2)));
+    o[12*count + k] = v.prrr_w_2_t_2;
+    o[15*count + k] = ((v.prrr_P_1_o + v.prrr_d_P_1_x) + (v.prrr_d_P_1_y + v.prrr_M_ya_1_z)) +
+        ((v.prrr_dy_1_P_1 + v.prrr_w_2_x) + (v.prrr_w_2_y + (v.prrr_H_a_2_z +
+        v.prrr_w_2_t_2)));
     o[14*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
         TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
         TOLERANCE*m->prrr_size[i]);
@@ -2279,7 +2181,7 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void dynamics_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *M, real *Z, real *H, verdict *t)
+    *M, real *Z, real *H, status_flags *t)
 {
     Z[3*w + k] = o[0*count + at];
     M[3*NV*w + k] = o[1*count + at];
@@ -2306,106 +2208,34 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (rrr-u_1) centripetal acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
-    const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
-    const real rrr_u_1_in_axes2_x = v.axis_x_rrr_axes2_x*rrr_u_1_x +
-        v.axis_y_rrr_axes2_x*rrr_u_1_t;
-    const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
-        v.axis_x_rrr_axes2_x*rrr_u_1_t;
-    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
-    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-        v.rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
-    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-    const real rrr_B_1_o_in_axes1_xy = v.inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
-    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
-        rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = v.axis_y_rrr_axes2_x*m->gravity_y -
-        v.axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
-    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*m->gravity_y
-        - v.axis_y_rrr_axes2_x*m->gravity_x;
-    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
-        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
-    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
-        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
-    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
-        v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
-        rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x -
-        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x +
-        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y);
-    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
-        v.axis_x_rrr_axes2_x*rrr_Q_t_2;
-    const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
-        v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
-    const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
-    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
-    /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
-        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
-    const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-    /* (M_ta) */
-    const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
-    const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
-    /* (M_aa) */
-    const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
-    /* (Z_a) */
-    const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
+    stage_rrr_Z_dynamics(m, i, &v);
     /* (M_tt) */
-    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
     /* (M_ta) */
-    gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    gather(&terms[3*count + k], add, v.rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
     /* (M_aa) */
-    gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rrr_M_aa_t);  /* M_aa_zz_of_legs */
     /* (Z_t) */
-    gather(&terms[6*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[6*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
     /* (Z_a) */
-    gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
+    gather(&terms[8*count + k], add, v.rrr_Z_a_t);  /* Z_a_z_of_legs */
     /* (rrr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_w_1_x;
     o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) */
-    o[2*count + k] = rrr_H_a_1_z;
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + rrr_H_a_1_z);
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_H_a_1_z;
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void dynamics_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[(2 + i)*w + k] = o[0*count + at];
     H[(NU + 2 + i)*w + k] = o[1*count + at];
@@ -2416,7 +2246,7 @@ INLINE void dynamics_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2467,7 +2297,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     real s[7] = {0}, sums[9] = {0};
     real terms_prrr[9*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[16*LEGS(LEGS_OF_prrr)] = {0};
@@ -2500,7 +2330,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
     real s[7*LANES], sums[9*LANES];
     real o_prrr[16*LANES];
@@ -2549,85 +2379,28 @@ INLINE void M_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t 
     values_prrr v;
     stage_prrr_X(m, w, i, j, s, X, &v);
     stage_prrr_M_dynamics(m, i, &v);
-    /* (prrr-dy_1_rel) coefficient of the acceleration in: acceleration of the connection point left
-       to the joint accelerations */
-    const real prrr_dy_1_rel_in_axes3_x = v.prrr_c_2*v.prrr_s_3_t - v.prrr_c_3*v.prrr_s_2;
-    /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
-    const real prrr_dy_1_qdd_2 = -v.inv_prrr_r_2_in_axes3_y*prrr_dy_1_rel_in_axes3_x;
-    /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
-       links' inertia and weight */
-    const real prrr_dy_1_Gamma_3_t =
-        m->prrr_J_3_in_spec3_zz[i]*m->prrr_w_3_in_axes3_y[i]*(v.prrr_e_1_in_axes3_y +
-        prrr_dy_1_qdd_2*v.prrr_r_2_in_axes3_x);
-    const real prrr_dy_1_Gamma_3 = m->prrr_J_3_in_spec3_zz[i]*prrr_dy_1_qdd_2 -
-        prrr_dy_1_Gamma_3_t;
-    /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-       links' inertia and weight */
-    const real prrr_dy_1_Gamma_2 = v.prrr_P_c_2_in_axes0_x +
-        m->prrr_Jc_2_in_axes2_zz[i]*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t;
-    /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
-       inertia and weight */
-    const real prrr_dy_1_Gamma_1 = m->prrr_P_c_1_in_axes0_x[i] +
-        v.prrr_P_c_2_in_axes0_x*prrr_dy_1_qdd_2;
-    /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*m->prrr_w_3_in_axes3_y[i];
-    /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real axis_y_prrr_axes3_x = m->prrr_base_frame_xx[i]*prrr_dy_1_rel_in_axes3_x +
-        m->prrr_base_frame_xy[i]*v.prrr_e_1_in_axes3_y;
-    const real axis_x_prrr_axes3_x = m->prrr_base_frame_yx[i]*prrr_dy_1_rel_in_axes3_x +
-        m->prrr_base_frame_yy[i]*v.prrr_e_1_in_axes3_y;
-    const real prrr_Q_t_3 = axis_y_prrr_axes3_x*v.prrr_d_c_in_axes3_xy +
-        axis_x_prrr_axes3_x*v.prrr_Q_t_2;
-    const real prrr_Q_t_4 = axis_y_prrr_axes3_x*v.prrr_Q_t_2 -
-        axis_x_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
-    const real prrr_Q_xx = -m->prrr_d_c_in_axes3_yy[i] - 2*axis_x_prrr_axes3_x*prrr_Q_t_3;
-    const real prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3;
-    const real prrr_Q_yy = -m->prrr_d_c_in_axes3_yy[i] - 2*axis_y_prrr_axes3_x*prrr_Q_t_4;
-    /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
-       extra degree of freedom of joint 1 */
-    const real prrr_dy_1_P_1_t =
-        v.inv_prrr_r_2_in_axes3_y*prrr_dy_1_rel_in_axes3_x*(prrr_dy_1_G_in_axes3_y*v.prrr_r_2_in_axes3_x
-        - prrr_dy_1_Gamma_2) - prrr_dy_1_G_in_axes3_y*v.prrr_e_1_in_axes3_y;
-    const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 + prrr_dy_1_P_1_t;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v.prrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.prrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.prrr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v.prrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.prrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v.prrr_M_aa_t);  /* M_aa_zz_of_legs */
     /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
        degree of freedom of joint 1 */
-    const real prrr_d_P_1_in_axes3_y = v.prrr_d_G_in_axes3_xy*prrr_dy_1_rel_in_axes3_x -
-        m->prrr_d_G_in_axes3_yy[i]*v.prrr_e_1_in_axes3_y;
-    const real prrr_d_P_1_in_axes3_x = v.prrr_d_G_in_axes3_xx*prrr_dy_1_rel_in_axes3_x -
-        v.inv_prrr_r_2_in_axes3_y*v.prrr_P_c_2_in_axes0_x -
-        v.prrr_d_Gamma_3_in_axes3_x*v.prrr_e_1_in_axes3_y*m->prrr_w_3_in_axes3_y[i];
-    const real prrr_d_P_1_x = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x +
-        axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y;
-    const real prrr_d_P_1_y = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
-        axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
-    /* (M_ta) coupling block of M */
-    const real prrr_M_ta_t = prrr_Q_xy*v.prrr_q_x - prrr_Q_xx*v.prrr_q_y;
-    const real prrr_M_ta_t_2 = prrr_Q_yy*v.prrr_q_x - prrr_Q_xy*v.prrr_q_y;
-    /* (M_aa) rotational block of M */
-    const real prrr_M_aa_t = prrr_M_ta_t_2*v.prrr_q_x - prrr_M_ta_t*v.prrr_q_y;
+    o[0*count + k] = v.prrr_d_P_1_x;
+    o[1*count + k] = v.prrr_d_P_1_x;
+    o[2*count + k] = v.prrr_d_P_1_y;
+    o[3*count + k] = v.prrr_d_P_1_y;
     /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
-    const real prrr_M_ya_1_z = prrr_d_P_1_y*v.prrr_q_x - prrr_d_P_1_x*v.prrr_q_y;
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, prrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, prrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, prrr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, prrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, prrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, prrr_M_aa_t);  /* M_aa_zz_of_legs */
-    /* (prrr-d_P_1) */
-    o[0*count + k] = prrr_d_P_1_x;
-    o[1*count + k] = prrr_d_P_1_x;
-    o[2*count + k] = prrr_d_P_1_y;
-    o[3*count + k] = prrr_d_P_1_y;
-    /* (prrr-M_ya_1) */
-    o[4*count + k] = prrr_M_ya_1_z;
-    o[5*count + k] = prrr_M_ya_1_z;
-    /* (prrr-dy_1_P_1) */
-    o[6*count + k] = prrr_dy_1_P_1;
-    o[9*count + k] = (prrr_d_P_1_x + prrr_d_P_1_y) + (prrr_M_ya_1_z + prrr_dy_1_P_1);
+    o[4*count + k] = v.prrr_M_ya_1_z;
+    o[5*count + k] = v.prrr_M_ya_1_z;
+    /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
+       extra degree of freedom of joint 1 */
+    o[6*count + k] = v.prrr_dy_1_P_1;
+    o[9*count + k] = (v.prrr_d_P_1_x + v.prrr_d_P_1_y) + (v.prrr_M_ya_1_z + v.prrr_dy_1_P_1);
     o[8*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
         TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
         TOLERANCE*m->prrr_size[i]);
@@ -2635,7 +2408,7 @@ INLINE void M_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t 
 }
 
 INLINE void M_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *M,
-    verdict *t)
+    status_flags *t)
 {
     M[3*NV*w + k] = o[0*count + at];
     M[3*w + k] = o[1*count + at];
@@ -2655,51 +2428,28 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
-    const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
-    const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
-        rrr_Q_t*m->rrr_base_frame_xx[i];
-    const real axis_x_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_yy[i] -
-        rrr_Q_t*m->rrr_base_frame_yx[i];
-    const real rrr_Q_t_3 = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x -
-        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x +
-        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y);
-    const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-    const real rrr_Q_t_5 = axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
-        axis_x_rrr_axes2_x*rrr_Q_t_4;
-    const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
-        axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
-    const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
-    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
-    /* (M_ta) */
-    const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
-    const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
-    /* (M_aa) */
-    const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
     /* (M_tt) */
-    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
     /* (M_ta) */
-    gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    gather(&terms[3*count + k], add, v.rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
     /* (M_aa) */
-    gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rrr_M_aa_t);  /* M_aa_zz_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2732,7 +2482,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real s[4] = {0}, sums[6] = {0};
     real terms_prrr[6*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
@@ -2762,7 +2512,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
     real s[4*LANES], sums[6*LANES];
     real o_prrr[10*LANES];
@@ -2804,9 +2555,10 @@ INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, value
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
-    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->f_p_t - m->Z_p_t;
+    const real Z_p_y = v->f_p_t_2 - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[2*w + k] = Z_p_x;
@@ -2820,102 +2572,16 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t 
     values_prrr v;
     stage_prrr_X(m, w, i, j, s, X, &v);
     stage_prrr_V_X(m, w, i, j, V, &v);
-    stage_prrr_Z_dynamics(m, w, i, j, V, &v);
-    /* (prrr-qd_2) rate of joint 2 */
-    const real axis_y_prrr_axes3_x = m->prrr_base_frame_xx[i]*v.prrr_qd_2_t +
-        m->prrr_base_frame_xy[i]*v.prrr_e_1_in_axes3_y;
-    const real axis_x_prrr_axes3_x = m->prrr_base_frame_yx[i]*v.prrr_qd_2_t +
-        m->prrr_base_frame_yy[i]*v.prrr_e_1_in_axes3_y;
-    const real prrr_qd_2 = -v.inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_x
-        - axis_y_prrr_axes3_x*v.prrr_S_dot_rest_y);
-    /* (prrr-W_2) centripetal tensor of link 2 */
-    const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
-    /* (prrr-omega_3) angular velocity of link 3 */
-    const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
-        m->prrr_w_3_in_axes3_y[i]*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_y +
-        axis_y_prrr_axes3_x*v.prrr_S_dot_rest_x - prrr_qd_2*v.prrr_r_2_in_axes3_x);
-    /* (prrr-W_3) centripetal tensor of link 3 */
-    const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
-    /* (prrr-u_1) centripetal acceleration of the connection point */
-    const real prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*v.prrr_u_1_x +
-        axis_y_prrr_axes3_x*v.prrr_u_1_t;
-    const real prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*v.prrr_u_1_x -
-        axis_x_prrr_axes3_x*v.prrr_u_1_t;
-    /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real prrr_bias_in_axes3_x =
-        prrr_W_2_in_axes2_xx*v.prrr_c_3*m->prrr_joint3_offset_x[i] -
-        prrr_W_3_t*m->prrr_platform_joint_offset_x[i];
-    /* (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x;
-    const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y -
-        prrr_W_2_in_axes2_xx*m->prrr_joint3_offset_x[i]*v.prrr_s_3_t;
-    /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real prrr_B_2_o_in_axes2_xy = v.inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
-    /* (prrr-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real prrr_alpha_3_o_in_axes3_z = m->prrr_w_3_in_axes3_y[i]*(prrr_rel_o_in_axes3_y +
-        prrr_B_2_o_in_axes2_xy*v.prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
-    /* (prrr-f_2_o) remainder of: inertia force of link 2 less its weight */
-    const real prrr_f_2_o_in_axes2_x = prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i] -
-        v.prrr_g_in_axes2_x*m->prrr_link2_mass[i] +
-        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_y[i];
-    const real prrr_f_2_o_in_axes2_y = prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_y[i] -
-        v.prrr_g_in_axes2_y*m->prrr_link2_mass[i] -
-        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_x[i];
-    /* (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real prrr_acc_3_o_in_axes3_x = axis_y_prrr_axes3_x*m->gravity_y -
-        axis_x_prrr_axes3_x*m->gravity_x + prrr_u_1_in_axes3_x;
-    const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y -
-        axis_x_prrr_axes3_x*m->gravity_y - axis_y_prrr_axes3_x*m->gravity_x;
-    /* (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-       reference points */
-    const real prrr_mu_3_o_in_axes3_z = prrr_acc_3_o_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
-        prrr_acc_3_o_in_axes3_x*m->prrr_h_3_in_spec3_y[i] +
-        m->prrr_J_3_in_spec3_zz[i]*prrr_alpha_3_o_in_axes3_z;
-    /* (prrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real prrr_mu_2_o_in_axes2_z = v.prrr_g_in_axes2_x*m->prrr_h_2_in_spec2_y[i] -
-        v.prrr_g_in_axes2_y*m->prrr_h_2_in_spec2_x[i] -
-        prrr_B_2_o_in_axes2_xy*m->prrr_J_2_in_spec2_zz[i];
-    /* (prrr-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-       connection point left out */
-    const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
-    /* (prrr-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
-       */
-    const real prrr_T_1_o_in_axes0_x = m->prrr_f_1_o_in_axes0_x[i] +
-        v.prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*v.prrr_s_2;
-    /* (prrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*m->prrr_w_3_in_axes3_y[i];
-    const real prrr_G_o_in_axes3_x =
-        v.inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*v.prrr_r_2_in_axes3_x -
-        prrr_N_2_o_in_axes2_z);
-    /* (prrr-c_o) remainder of: leg force on the platform without actuation and without the mass at
-       the connection point */
-    const real prrr_c_o_in_axes3_x = prrr_W_3_t*m->prrr_h_3_in_spec3_x[i] +
-        prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_y[i] - prrr_G_o_in_axes3_x;
-    const real prrr_c_o_in_axes3_y = prrr_W_3_t*m->prrr_h_3_in_spec3_y[i] -
-        prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_x[i] - prrr_G_o_in_axes3_y;
-    /* (prrr-U) velocity and gravity terms of the leg force */
-    const real prrr_U_x = -axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y -
-        axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x;
-    const real prrr_U_y = axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
-        axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
+    stage_prrr_Z_dynamics(m, i, &v);
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v.prrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.prrr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[2*count + k], add, v.prrr_Z_a_t);  /* Z_a_z_of_legs */
     /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
        joint 1 */
-    const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*v.prrr_qd_2_t -
-        prrr_G_o_in_axes3_y*v.prrr_e_1_in_axes3_y;
-    const real prrr_P_1_o = prrr_T_1_o_in_axes0_x + prrr_P_1_o_t;
-    /* (Z_a) rotational part of Z */
-    const real prrr_Z_a_t = prrr_U_y*v.prrr_q_x - prrr_U_x*v.prrr_q_y;
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, prrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, prrr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[2*count + k], add, prrr_Z_a_t);  /* Z_a_z_of_legs */
-    /* (prrr-P_1_o) */
-    o[0*count + k] = prrr_P_1_o;
-    o[3*count + k] = prrr_P_1_o;
+    o[0*count + k] = v.prrr_P_1_o;
+    o[3*count + k] = v.prrr_P_1_o;
     o[2*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
         TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
         TOLERANCE*m->prrr_size[i]);
@@ -2923,7 +2589,7 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t 
 }
 
 INLINE void Z_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *Z,
-    verdict *t)
+    status_flags *t)
 {
     Z[3*w + k] = o[0*count + at];
     t->unreachable[k] += o[1*count + at];
@@ -2937,96 +2603,24 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*rrr_qd_1_t;
-    const real rrr_qd_1_t_3 = v.inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
-        axis_y_rrr_axes2_x*v.rrr_S_dot_y);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3;
-    /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z =
-        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
-        axis_y_rrr_axes2_x*v.rrr_S_dot_x + rrr_qd_1_t_3*v.rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
-    /* (rrr-W_2) centripetal tensor of link 2 */
-    const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-    /* (rrr-u_1) centripetal acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
-    const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
-    const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
-        axis_y_rrr_axes2_x*rrr_u_1_t;
-    const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
-        axis_x_rrr_axes2_x*rrr_u_1_t;
-    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
-    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
-    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-        rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
-    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-    const real rrr_B_1_o_in_axes1_xy = v.inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
-    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
-        rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = axis_y_rrr_axes2_x*m->gravity_y -
-        axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
-    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*m->gravity_y -
-        axis_y_rrr_axes2_x*m->gravity_x;
-    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
-        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
-    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
-        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
-    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rrr_c_o_in_axes2_x = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
-        v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
-        rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
-    /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
-        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
-    const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-    /* (Z_a) */
-    const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
+    stage_rrr_Z_dynamics(m, i, &v);
     /* (Z_t) */
-    gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[0*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
     /* (Z_a) */
-    gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
+    gather(&terms[2*count + k], add, v.rrr_Z_a_t);  /* Z_a_z_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
     const real Z_p_x = s[2*w + k];
@@ -3047,7 +2641,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[4*LEGS(LEGS_OF_prrr)] = {0};
@@ -3078,8 +2672,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
     real s[5*LANES], sums[3*LANES];
     real o_prrr[4*LANES];
@@ -3124,7 +2718,6 @@ INLINE void H_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t 
 {
     values_prrr v;
     stage_prrr_X(m, w, i, j, s, X, &v);
-    stage_prrr_H_condition(m, i, &v);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     o[0*count + k] = 1;
     /* (prrr-w_2) reciprocal vector 1 */
@@ -3142,7 +2735,7 @@ INLINE void H_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t 
 }
 
 INLINE void H_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    verdict *t)
+    status_flags *t)
 {
     H[3*NU*w + k] = o[0*count + at];
     H[1*w + k] = o[1*count + at];
@@ -3159,7 +2752,6 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    stage_rrr_H_condition(m, i, &v);
     /* (rrr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_w_1_x;
     o[1*count + k] = v.rrr_w_1_y;
@@ -3172,7 +2764,7 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 }
 
 INLINE void H_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[(2 + i)*w + k] = o[0*count + at];
     H[(NU + 2 + i)*w + k] = o[1*count + at];
@@ -3182,7 +2774,7 @@ INLINE void H_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[5*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real s[2] = {0};
     real o_prrr[8*LEGS(LEGS_OF_prrr)] = {0};
@@ -3204,7 +2796,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
     real s[2*LANES];
     real o_prrr[8*LANES];
@@ -3245,6 +2838,7 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     values *v, real *s)
 {
     stage_V(w, k, V, v);
+    stage_V_X(v);
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -3252,8 +2846,8 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     /* (f_p) inertia force of the platform less its weight */
     const real alpha_z = A[2*w + k];
-    const real f_p_x = a_t_x*m->m_star + v->W_p_xx*v->h_star_x - alpha_z*v->h_star_y;
-    const real f_p_y = a_t_y*m->m_star + v->W_p_xx*v->h_star_y + alpha_z*v->h_star_x;
+    const real f_p_x = a_t_x*m->m_star - alpha_z*v->h_star_y + v->f_p_t;
+    const real f_p_y = a_t_y*m->m_star + alpha_z*v->h_star_x + v->f_p_t_2;
     /* (mu_p) inertia moment of the platform less that of its weight */
     const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v->h_star_x - a_t_x*v->h_star_y;
     s[2*w + k] = f_p_x;
@@ -3269,44 +2863,31 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, 
     stage_prrr_X(m, w, i, j, s, X, &v);
     stage_prrr_A_X(w, j, A, &v);
     stage_prrr_V_X(m, w, i, j, V, &v);
-    stage_prrr_A_V_X(w, j, V, &v);
+    stage_prrr_A_V_X(m, w, i, j, A, &v);
     stage_prrr_legs_required(m, w, i, j, A, &v);
-    /* (prrr-w_2) reciprocal vector 1 */
-    const real prrr_w_2_t_2 = -v.inv_prrr_r_2_in_axes3_y*v.prrr_w_2_t;
     /* (prrr-acc_1) acceleration of the reference point of link 1, less gravity */
     const real prrr_ydd_1 = A[3*w + j];
     const real prrr_acc_1_in_axes0_x = prrr_ydd_1 - m->prrr_g_in_axes0_x[i];
     /* (prrr-f_2) inertia force of link 2 less its weight */
     const real prrr_f_2_in_axes2_x = v.prrr_acc_2_in_axes2_x*m->prrr_link2_mass[i] +
-        v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i] +
-        v.prrr_B_2_in_axes2_xy*m->prrr_h_2_in_spec2_y[i];
+        v.prrr_f_2_t + m->prrr_h_2_in_spec2_y[i]*v.prrr_qdd_2_t;
     const real prrr_f_2_in_axes2_y = v.prrr_acc_2_in_axes2_y*m->prrr_link2_mass[i] +
-        v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_y[i] -
-        v.prrr_B_2_in_axes2_xy*m->prrr_h_2_in_spec2_x[i];
+        v.prrr_f_2_t_2 - m->prrr_h_2_in_spec2_x[i]*v.prrr_qdd_2_t;
     /* (prrr-T_1) inertia force of the links from 1 outwards, the last link left out */
     const real prrr_T_1_in_axes0_x = prrr_acc_1_in_axes0_x*m->prrr_link1_mass[i] +
         v.prrr_c_2*prrr_f_2_in_axes2_y + prrr_f_2_in_axes2_x*v.prrr_s_2;
-    /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
-    const real prrr_G_in_axes3_x =
-        v.inv_prrr_r_2_in_axes3_y*(v.prrr_G_in_axes3_y*v.prrr_r_2_in_axes3_x -
-        v.prrr_N_2_in_axes2_z);
     /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real prrr_c_in_axes3_x = v.prrr_W_3_t*m->prrr_h_3_in_spec3_x[i] +
-        v.prrr_alpha_3_in_axes3_z*m->prrr_h_3_in_spec3_y[i] - prrr_G_in_axes3_x;
     const real prrr_c_x = v.axis_y_prrr_axes3_x*v.prrr_c_in_axes3_y +
-        v.axis_x_prrr_axes3_x*prrr_c_in_axes3_x;
+        v.axis_x_prrr_axes3_x*v.prrr_c_in_axes3_x;
     const real prrr_c_y = v.axis_x_prrr_axes3_x*v.prrr_c_in_axes3_y -
-        v.axis_y_prrr_axes3_x*prrr_c_in_axes3_x;
+        v.axis_y_prrr_axes3_x*v.prrr_c_in_axes3_x;
     /* (prrr-P_1) inertia and weight of the leg along the extra degree of freedom of joint 1 */
-    const real prrr_P_1_t = prrr_G_in_axes3_x*v.prrr_w_2_t -
+    const real prrr_P_1_t = v.prrr_G_in_axes3_x*v.prrr_w_2_t -
         v.prrr_G_in_axes3_y*v.prrr_e_1_in_axes3_y;
     const real prrr_P_1 = prrr_T_1_in_axes0_x + prrr_P_1_t;
     /* (R_a) moment that actuators and external wrench must give */
     const real prrr_R_a_t = prrr_c_x*v.prrr_q_y - prrr_c_y*v.prrr_q_x;
-    /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-    const real prrr_H_a_2_z = v.prrr_q_x*v.prrr_w_2_y - v.prrr_q_y*v.prrr_w_2_x;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, prrr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, prrr_c_y);  /* R_t_y_of_legs */
@@ -3316,13 +2897,13 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, 
     o[0*count + k] = prrr_P_1;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     o[1*count + k] = 1;
-    /* (prrr-w_2) */
+    /* (prrr-w_2) reciprocal vector 1 */
     o[2*count + k] = v.prrr_w_2_x;
     o[3*count + k] = v.prrr_w_2_y;
-    /* (prrr-H_a_2) */
-    o[4*count + k] = prrr_H_a_2_z;
+    /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+    o[4*count + k] = v.prrr_H_a_2_z;
     /* (prrr-w_2) */
-    o[5*count + k] = prrr_w_2_t_2;
+    o[5*count + k] = v.prrr_w_2_t_2;
     o[7*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
         TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
         TOLERANCE*m->prrr_size[i]);
@@ -3330,7 +2911,7 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void required_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
     required[3*w + k] = o[0*count + at];
     H[3*NU*w + k] = o[1*count + at];
@@ -3350,7 +2931,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_A_V_X(w, j, V, &v);
+    stage_rrr_A_V_X(m, i, &v);
     stage_rrr_legs_required(m, i, &v);
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -3360,8 +2941,6 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
     /* (R_a) */
     const real rrr_R_a_t = rrr_c_x*v.rrr_q_y - rrr_c_y*v.rrr_q_x;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
     /* (R_t) */
     gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
@@ -3370,15 +2949,15 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     /* (rrr-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrr_w_1_x;
     o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) */
-    o[2*count + k] = rrr_H_a_1_z;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_H_a_1_z;
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void required_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[(2 + i)*w + k] = o[0*count + at];
     H[(NU + 2 + i)*w + k] = o[1*count + at];
@@ -3408,7 +2987,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[8*LEGS(LEGS_OF_prrr)] = {0};
@@ -3441,7 +3020,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, verdict *restrict t)
+    real *restrict required, real *restrict H, status_flags *restrict t)
 {
     real s[5*LANES], sums[3*LANES];
     real o_prrr[8*LANES];
@@ -3487,15 +3066,11 @@ INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t i, 
     k, size_t count, const real *s, const real *X, real *o)
 {
     values_prrr v;
-    stage_prrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    stage_prrr_X(m, w, i, j, s, X, &v);
     /* (prrr-q_2) displacement of joint 2 */
-    const real prrr_q_2 = angle(-v.inv_prrr_rho2_2*(-v.prrr_Kd_2*v.prrr_Ks_2 -
-        v.prrr_Kc_2*v.prrr_root_2), -v.inv_prrr_rho2_2*(v.prrr_Ks_2*v.prrr_root_2 -
-        v.prrr_Kc_2*v.prrr_Kd_2));
+    const real prrr_q_2 = angle(v.prrr_s_2, v.prrr_c_2);
     /* (prrr-q_3) displacement of joint 3 */
-    const real prrr_q_3 =
-        angle(-m->inv_prrr_size_t[i]*m->inv_prrr_size_t_2[i]*m->prrr_joint3_offset_x[i]*m->prrr_platform_joint_offset_x[i]*v.prrr_root_2,
-        m->inv_prrr_size_t_2[i]*m->prrr_platform_joint_offset_x[i]*v.prrr_x_3_in_axes2_x);
+    const real prrr_q_3 = angle(-v.prrr_s_3_t, v.prrr_c_3);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real prrr_y_1_extra = X[3*w + j];
     o[0*count + k] = prrr_y_1_extra;
@@ -3510,7 +3085,7 @@ INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t i, 
 }
 
 INLINE void inverse_kinematics_place_prrr(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *q, verdict *t)
+    *o, real *q, status_flags *t)
 {
     q[0*w + k] = o[0*count + at];
     q[1*w + k] = o[1*count + at];
@@ -3524,15 +3099,11 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     size_t count, const real *s, const real *X, real *o)
 {
     values_rrr v;
-    stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    stage_rrr_X(m, w, i, j, s, X, &v);
     /* (rrr-q_1) displacement of joint 1 */
-    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 +
-        v.rrr_Kc_1*v.rrr_root_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
-        v.rrr_Ks_1*v.rrr_root_1));
+    const real rrr_q_1 = angle(v.rrr_s_1, v.rrr_c_1);
     /* (rrr-q_2) displacement of joint 2 */
-    const real rrr_q_2 =
-        angle(-m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1,
-        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x);
+    const real rrr_q_2 = angle(v.rrr_s_2, v.rrr_c_2);
     /* (rrr-q_1) */
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
@@ -3543,7 +3114,7 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
 }
 
 INLINE void inverse_kinematics_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[(3 + 2*i)*w + k] = o[0*count + at];
     q[(4 + 2*i)*w + k] = o[1*count + at];
@@ -3552,7 +3123,7 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
     real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
@@ -3574,7 +3145,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
     real s[2*LANES];
     real o_prrr[6*LANES];
@@ -3615,34 +3186,15 @@ INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t i, size_t 
 {
     values_prrr v;
     stage_prrr_X(m, w, i, j, s, X, &v);
-    /* (prrr-S_dot) velocity of the connection point */
-    const real omega_z = V[2*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real prrr_S_dot_x = t_dot_x - omega_z*v.prrr_q_y;
-    const real t_dot_y = V[1*w + j];
-    const real prrr_S_dot_y = t_dot_y + omega_z*v.prrr_q_x;
-    /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-    const real prrr_yd_1 = V[3*w + j];
-    const real prrr_S_dot_rest_x = prrr_S_dot_x - m->prrr_base_frame_xy[i]*prrr_yd_1;
-    const real prrr_S_dot_rest_y = prrr_S_dot_y - m->prrr_base_frame_yy[i]*prrr_yd_1;
-    /* (prrr-qd_2) rate of joint 2 */
-    const real axis_y_prrr_axes3_x = m->prrr_base_frame_xx[i]*v.prrr_qd_2_t +
-        m->prrr_base_frame_xy[i]*v.prrr_e_1_in_axes3_y;
-    const real axis_x_prrr_axes3_x = m->prrr_base_frame_yx[i]*v.prrr_qd_2_t +
-        m->prrr_base_frame_yy[i]*v.prrr_e_1_in_axes3_y;
-    const real prrr_qd_2 = -(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-        axis_y_prrr_axes3_x*prrr_S_dot_rest_y)/v.prrr_r_2_in_axes3_y;
-    /* (prrr-qd_3) rate of joint 3 */
-    const real prrr_qd_3 = m->prrr_w_3_in_axes3_y[i]*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-        axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*(v.prrr_c_3*v.prrr_r_2_in_axes2_x +
-        v.prrr_r_2_t*v.prrr_s_3_t));
+    stage_prrr_V_X(m, w, i, j, V, &v);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    const real prrr_yd_1 = V[3*w + j];
     o[0*count + k] = prrr_yd_1;
-    /* (prrr-qd_2) */
-    o[1*count + k] = prrr_qd_2;
-    /* (prrr-qd_3) */
-    o[2*count + k] = prrr_qd_3;
-    o[5*count + k] = prrr_yd_1 + (prrr_qd_2 + prrr_qd_3);
+    /* (prrr-qd_2) rate of joint 2 */
+    o[1*count + k] = v.prrr_qd_2;
+    /* (prrr-qd_3) rate of joint 3 */
+    o[2*count + k] = v.prrr_qd_3;
+    o[5*count + k] = prrr_yd_1 + (v.prrr_qd_2 + v.prrr_qd_3);
     o[4*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
         TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
         TOLERANCE*m->prrr_size[i]);
@@ -3650,7 +3202,7 @@ INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t i, size_t 
 }
 
 INLINE void joint_rates_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o,
-    real *qd, verdict *t)
+    real *qd, status_flags *t)
 {
     qd[0*w + k] = o[0*count + at];
     qd[1*w + k] = o[1*count + at];
@@ -3665,36 +3217,19 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    /* (rrr-S_dot) velocity of the connection point */
-    const real omega_z = V[2*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real rrr_S_dot_x = t_dot_x - omega_z*v.rrr_q_y;
-    const real t_dot_y = V[1*w + j];
-    const real rrr_S_dot_y = t_dot_y + omega_z*v.rrr_q_x;
+    stage_rrr_V_X(m, w, i, j, V, &v);
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*rrr_qd_1_t;
-    const real rrr_qd_1_t_3 = (axis_x_rrr_axes2_x*rrr_S_dot_x -
-        axis_y_rrr_axes2_x*rrr_S_dot_y)/v.rrr_r_1_in_axes2_y;
+    o[0*count + k] = -v.rrr_qd_1_t;
     /* (rrr-qd_2) rate of joint 2 */
-    const real rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-        axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t_3*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
-        v.rrr_r_1_in_axes1_y*v.rrr_s_2));
-    /* (rrr-qd_1) */
-    o[0*count + k] = -rrr_qd_1_t_3;
-    /* (rrr-qd_2) */
-    o[1*count + k] = rrr_qd_2;
-    o[4*count + k] = rrr_qd_1_t_3 + rrr_qd_2;
+    o[1*count + k] = v.rrr_qd_2;
+    o[4*count + k] = v.rrr_qd_1_t + v.rrr_qd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void joint_rates_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[(3 + 2*i)*w + k] = o[0*count + at];
     qd[(4 + 2*i)*w + k] = o[1*count + at];
@@ -3703,7 +3238,8 @@ INLINE void joint_rates_place_rrr(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
     real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
@@ -3725,7 +3261,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
     real s[2*LANES];
     real o_prrr[6*LANES];
@@ -3768,44 +3304,15 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t i,
     stage_prrr_X(m, w, i, j, s, X, &v);
     stage_prrr_A_X(w, j, A, &v);
     stage_prrr_V_X(m, w, i, j, V, &v);
-    stage_prrr_A_V_X(w, j, V, &v);
-    /* (prrr-qd_2) rate of joint 2 */
-    const real axis_y_prrr_axes3_x = m->prrr_base_frame_xx[i]*v.prrr_qd_2_t +
-        m->prrr_base_frame_xy[i]*v.prrr_e_1_in_axes3_y;
-    const real axis_x_prrr_axes3_x = m->prrr_base_frame_yx[i]*v.prrr_qd_2_t +
-        m->prrr_base_frame_yy[i]*v.prrr_e_1_in_axes3_y;
-    const real prrr_qd_2 = -v.inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_x
-        - axis_y_prrr_axes3_x*v.prrr_S_dot_rest_y);
-    /* (prrr-W_2) centripetal tensor of link 2 */
-    const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
-    /* (prrr-omega_3) angular velocity of link 3 */
-    const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
-        m->prrr_w_3_in_axes3_y[i]*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_y +
-        axis_y_prrr_axes3_x*v.prrr_S_dot_rest_x - prrr_qd_2*v.prrr_r_2_in_axes3_x);
-    /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real prrr_bias_in_axes3_x =
-        prrr_W_2_in_axes2_xx*v.prrr_c_3*m->prrr_joint3_offset_x[i] -
-        prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*m->prrr_platform_joint_offset_x[i];
-    /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real prrr_ydd_1 = A[3*w + j];
-    const real prrr_rel_in_axes3_x = v.prrr_qd_2_t*prrr_ydd_1 +
-        axis_x_prrr_axes3_x*v.prrr_S_ddot_x - axis_y_prrr_axes3_x*v.prrr_S_ddot_y -
-        prrr_bias_in_axes3_x;
-    const real prrr_rel_in_axes3_y = axis_x_prrr_axes3_x*v.prrr_S_ddot_y -
-        v.prrr_e_1_in_axes3_y*prrr_ydd_1 + axis_y_prrr_axes3_x*v.prrr_S_ddot_x -
-        prrr_W_2_in_axes2_xx*m->prrr_joint3_offset_x[i]*v.prrr_s_3_t;
-    /* (prrr-qdd_2) acceleration of joint 2 */
-    const real prrr_qdd_2_t = v.inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
-    /* (prrr-qdd_3) acceleration of joint 3 */
-    const real prrr_qdd_3 = m->prrr_w_3_in_axes3_y[i]*(prrr_rel_in_axes3_y +
-        prrr_qdd_2_t*v.prrr_r_2_in_axes3_x);
+    stage_prrr_A_V_X(m, w, i, j, A, &v);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    const real prrr_ydd_1 = A[3*w + j];
     o[0*count + k] = prrr_ydd_1;
-    /* (prrr-qdd_2) */
-    o[1*count + k] = -prrr_qdd_2_t;
-    /* (prrr-qdd_3) */
-    o[2*count + k] = prrr_qdd_3;
-    o[5*count + k] = prrr_ydd_1 + (prrr_qdd_2_t + prrr_qdd_3);
+    /* (prrr-qdd_2) acceleration of joint 2 */
+    o[1*count + k] = -v.prrr_qdd_2_t;
+    /* (prrr-qdd_3) acceleration of joint 3 */
+    o[2*count + k] = v.prrr_qdd_3;
+    o[5*count + k] = prrr_ydd_1 + (v.prrr_qdd_2_t + v.prrr_qdd_3);
     o[4*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
         TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
         TOLERANCE*m->prrr_size[i]);
@@ -3813,7 +3320,7 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t i,
 }
 
 INLINE void joint_accelerations_place_prrr(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *qdd, verdict *t)
+    *o, real *qdd, status_flags *t)
 {
     qdd[0*w + k] = o[0*count + at];
     qdd[1*w + k] = o[1*count + at];
@@ -3830,46 +3337,19 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_A_V_X(w, j, V, &v);
-    /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
-    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_xx[i]*rrr_qd_1_t;
-    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
-        m->rrr_base_frame_yx[i]*rrr_qd_1_t;
-    const real rrr_qd_1_t_3 = v.inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
-        axis_y_rrr_axes2_x*v.rrr_S_dot_y);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3;
-    /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z =
-        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
-        axis_y_rrr_axes2_x*v.rrr_S_dot_x + rrr_qd_1_t_3*v.rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
-    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
-    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x -
-        axis_y_rrr_axes2_x*v.rrr_S_ddot_y - rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
-        axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    stage_rrr_A_V_X(m, i, &v);
     /* (rrr-qdd_1) acceleration of joint 1 */
-    const real rrr_qdd_1_t = v.inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+    o[0*count + k] = -v.rrr_qdd_1_t;
     /* (rrr-qdd_2) acceleration of joint 2 */
-    const real rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
-        rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
-    /* (rrr-qdd_1) */
-    o[0*count + k] = -rrr_qdd_1_t;
-    /* (rrr-qdd_2) */
-    o[1*count + k] = rrr_qdd_2;
-    o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
+    o[1*count + k] = v.rrr_qdd_2;
+    o[4*count + k] = v.rrr_qdd_1_t + v.rrr_qdd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void joint_accelerations_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[(3 + 2*i)*w + k] = o[0*count + at];
     qdd[(4 + 2*i)*w + k] = o[1*count + at];
@@ -3879,7 +3359,7 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
     real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
@@ -3901,7 +3381,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
     real s[2*LANES];
     real o_prrr[6*LANES];
@@ -3943,16 +3423,10 @@ INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size
     stage_prrr_X(m, w, i, j, s, X, &v);
     stage_prrr_A_X(w, j, A, &v);
     stage_prrr_V_X(m, w, i, j, V, &v);
-    stage_prrr_A_V_X(w, j, V, &v);
+    stage_prrr_A_V_X(m, w, i, j, A, &v);
     stage_prrr_legs_required(m, w, i, j, A, &v);
-    /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
-       point */
-    const real prrr_c_in_axes3_x = v.prrr_W_3_t*m->prrr_h_3_in_spec3_x[i] +
-        v.prrr_alpha_3_in_axes3_z*m->prrr_h_3_in_spec3_y[i] -
-        v.inv_prrr_r_2_in_axes3_y*(v.prrr_G_in_axes3_y*v.prrr_r_2_in_axes3_x -
-        v.prrr_N_2_in_axes2_z);
     /* (prrr-c_true) leg force on the platform without actuation, the last link's mass included */
-    const real prrr_c_true_in_axes3_x = prrr_c_in_axes3_x -
+    const real prrr_c_true_in_axes3_x = v.prrr_c_in_axes3_x -
         v.prrr_acc_3_in_axes3_x*m->prrr_link3_mass[i];
     const real prrr_c_true_in_axes3_y = v.prrr_c_in_axes3_y -
         v.prrr_acc_3_in_axes3_y*m->prrr_link3_mass[i];
@@ -3973,7 +3447,7 @@ INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size
 }
 
 INLINE void legs_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     leg_force[0*w + k] = o[0*count + at];
     leg_force[1*w + k] = o[1*count + at];
@@ -3990,7 +3464,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_A_X(w, j, A, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_A_V_X(w, j, V, &v);
+    stage_rrr_A_V_X(m, i, &v);
     stage_rrr_legs_required(m, i, &v);
     /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
     const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
@@ -4013,7 +3487,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[(3*(1 + i))*w + k] = o[0*count + at];
     leg_force[(3*(1 + i) + 1)*w + k] = o[1*count + at];
@@ -4024,7 +3498,7 @@ INLINE void legs_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
@@ -4062,9 +3536,8 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
-    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xx*m->h_star_in_platform_x -
-        v->R_yx*m->h_star_in_platform_y) + m->gravity_y*(m->m_star*t_y +
-        v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x);
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
+        m->gravity_y*(m->m_star*t_y + v->h_star_y);
     s[2*w + k] = potential_t;
 }
 
@@ -4072,33 +3545,21 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t i, size_t j,
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
     values_prrr v;
-    stage_prrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real prrr_c_2 = -v.inv_prrr_rho2_2*(v.prrr_Ks_2*v.prrr_root_2 -
-        v.prrr_Kc_2*v.prrr_Kd_2);
-    /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real prrr_s_2 = -v.inv_prrr_rho2_2*(-v.prrr_Kd_2*v.prrr_Ks_2 -
-        v.prrr_Kc_2*v.prrr_root_2);
-    /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-    const real prrr_c_3 =
-        m->inv_prrr_size_t_2[i]*m->prrr_platform_joint_offset_x[i]*v.prrr_x_3_in_axes2_x;
-    /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-    const real prrr_s_3_t =
-        m->inv_prrr_size_t[i]*m->inv_prrr_size_t_2[i]*m->prrr_joint3_offset_x[i]*m->prrr_platform_joint_offset_x[i]*v.prrr_root_2;
+    stage_prrr_X(m, w, i, j, s, X, &v);
     /* (potential) */
     const real prrr_y_1_extra = X[3*w + j];
     const real prrr_potential_t_3 = m->prrr_b_in_axes0_x[i] + prrr_y_1_extra;
-    const real prrr_potential_t_4 = prrr_c_3*m->prrr_h_3_in_spec3_x[i] +
-        m->prrr_h_3_in_spec3_y[i]*prrr_s_3_t;
-    const real prrr_potential_t_5 = prrr_c_3*m->prrr_h_3_in_spec3_y[i] -
-        m->prrr_h_3_in_spec3_x[i]*prrr_s_3_t;
+    const real prrr_potential_t_4 = v.prrr_c_3*m->prrr_h_3_in_spec3_x[i] +
+        m->prrr_h_3_in_spec3_y[i]*v.prrr_s_3_t;
+    const real prrr_potential_t_5 = v.prrr_c_3*m->prrr_h_3_in_spec3_y[i] -
+        m->prrr_h_3_in_spec3_x[i]*v.prrr_s_3_t;
     const real prrr_potential_t_6 = m->prrr_acc_1_in_axes0_y[i]*(m->prrr_h_1_in_spec0_x[i] -
-        m->prrr_potential_t[i] - m->prrr_potential_t_2[i] + prrr_c_2*m->prrr_h_2_in_spec2_x[i]
-        - m->prrr_h_2_in_spec2_y[i]*prrr_s_2 + prrr_c_2*prrr_potential_t_4 -
-        prrr_potential_t_5*prrr_s_2) + m->prrr_g_in_axes0_x[i]*(m->prrr_h_1_in_spec0_y[i] +
+        m->prrr_potential_t[i] - m->prrr_potential_t_2[i] + v.prrr_P_c_2_in_axes0_x +
+        v.prrr_c_2*prrr_potential_t_4 - prrr_potential_t_5*v.prrr_s_2) +
+        m->prrr_g_in_axes0_x[i]*(m->prrr_h_1_in_spec0_y[i] +
         m->prrr_link1_mass[i]*prrr_potential_t_3 + m->prrr_link2_mass[i]*prrr_potential_t_3 +
-        prrr_c_2*m->prrr_h_2_in_spec2_y[i] + m->prrr_h_2_in_spec2_x[i]*prrr_s_2 +
-        prrr_c_2*prrr_potential_t_5 + prrr_potential_t_4*prrr_s_2);
+        v.prrr_c_2*m->prrr_h_2_in_spec2_y[i] + m->prrr_h_2_in_spec2_x[i]*v.prrr_s_2 +
+        v.prrr_c_2*prrr_potential_t_5 + prrr_potential_t_4*v.prrr_s_2);
     /* (potential) */
     gather(&terms[0*count + k], add, -prrr_potential_t_6);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
@@ -4106,7 +3567,8 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t i, size_t j,
     o[0*count + k] = UNLESS(v.prrr_disc_2 >= 0);
 }
 
-INLINE void potential_place_prrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_prrr(size_t k, size_t at, size_t count, const real *o, status_flags
+    *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -4116,33 +3578,22 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
     values_rrr v;
-    stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
-    /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 + v.rrr_Kc_1*v.rrr_root_1);
-    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real rrr_c_2 =
-        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x;
-    /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rrr_s_2 =
-        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1;
+    stage_rrr_X(m, w, i, j, s, X, &v);
     /* (potential) */
-    const real rrr_potential_t_3 = (rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_x[i] +
-        rrr_c_2*m->rrr_h_2_in_spec2_x[i] + m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t[i]
-        + m->rrr_potential_t_2[i]*rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*rrr_s_2) +
-        (rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_y[i] +
-        rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
-        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] - m->rrr_potential_t[i]*rrr_s_1)
-        + m->rrr_h_2_in_spec2_x[i]*rrr_s_2);
+    const real rrr_potential_t_3 = v.rrr_g_in_axes1_x*(m->rrr_h_1_in_spec1_x[i] +
+        v.rrr_c_2*m->rrr_h_2_in_spec2_x[i] +
+        m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
+        m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
+        v.rrr_g_in_axes1_y*(m->rrr_h_1_in_spec1_y[i] + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
+        m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -4159,7 +3610,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
     real s[3] = {0}, sums[2] = {0};
     real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[2*LEGS(LEGS_OF_prrr)] = {0};
@@ -4192,7 +3643,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4207,7 +3658,6 @@ INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t i, size_t j,
 {
     values_prrr v;
     stage_prrr_X(m, w, i, j, s, X, &v);
-    stage_prrr_H_condition(m, i, &v);
     /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real prrr_pivot_size = magnitude(v.prrr_rho2_2);
@@ -4242,7 +3692,7 @@ INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t i, size_t j,
 }
 
 INLINE void condition_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, real *pivots, real *reach, verdict *t)
+    *H, real *pivots, real *reach, status_flags *t)
 {
     H[3*NU*w + k] = o[0*count + at];
     H[1*w + k] = o[1*count + at];
@@ -4261,7 +3711,6 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    stage_rrr_H_condition(m, i, &v);
     /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
@@ -4290,7 +3739,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void condition_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *pivots, real *reach, verdict *t)
+    *o, real *H, real *pivots, real *reach, status_flags *t)
 {
     H[(2 + i)*w + k] = o[0*count + at];
     H[(NU + 2 + i)*w + k] = o[1*count + at];
@@ -4302,7 +3751,7 @@ INLINE void condition_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t 
     t->total[k] += o[7*count + at];
 }
 
-INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, verdict *t)
+INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_prrr = sums[0*w + k];
@@ -4315,7 +3764,7 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
     real s[2] = {0}, sums[2] = {0};
     real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
@@ -4351,184 +3800,167 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 int planar_redundant_M(const prepared *m, const real *X, real *M_out)
 {
     real M[NV*NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M, why.overflow);
     }
     copy(NV*NV, M, M_out);
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int planar_redundant_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     real Z[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z, why.overflow);
     }
     copy(NV, Z, Z_out);
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int planar_redundant_H(const prepared *m, const real *X, real *H_out)
 {
     real H[NV*NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H, why.overflow);
     }
     copy(NV*NU, H, H_out);
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int planar_redundant_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     real q[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q, why.overflow);
     }
     copy(NJ, q, q_out);
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int planar_redundant_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd, why.overflow);
     }
     copy(NJ, qd, qd_out);
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int planar_redundant_joint_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
     real qdd[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd, why.overflow);
     }
     copy(NJ, qdd, qdd_out);
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int planar_redundant_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M, why.overflow);
@@ -4538,24 +3970,24 @@ int planar_redundant_dynamics(const prepared *m, const real *X, const real *V, r
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_4(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -4642,14 +4074,9 @@ int planar_redundant_inverse_dynamics(const prepared *m, const real *X, const re
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, extend_1[4] = {0}, subtract_1[NV] = {0}, unsure_tau[1] =
         {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 4; ++i) {
@@ -4667,7 +4094,7 @@ int planar_redundant_inverse_dynamics(const prepared *m, const real *X, const re
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    return settled(&why, NU, tau_out);
+    return final_status(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4675,7 +4102,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], extend_1[4*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4689,8 +4116,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = required[i] - extend_1[i];
     }
     eliminate_4(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
 }
 
 static const size_t order_A[] = {0, 1, 2, 3};
@@ -4702,14 +4129,9 @@ int planar_redundant_forward_dynamics(const prepared *m, const real *X, const re
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[4] = {0}, add_1[NV]
         = {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -4731,7 +4153,7 @@ int planar_redundant_forward_dynamics(const prepared *m, const real *X, const re
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4740,7 +4162,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, extend_1[4*LANES], add_1[NV*LANES],
         subtract_1[NV*LANES], A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4758,8 +4180,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_4(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int planar_redundant_complete_acceleration(const prepared *m, const real *X, const real *V, const
@@ -4769,13 +4191,11 @@ int planar_redundant_complete_acceleration(const prepared *m, const real *X, con
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int planar_redundant_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -4783,52 +4203,27 @@ int planar_redundant_leg_reactions(const prepared *m, const real *X, const real 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1, 2};
-    real required[NV] = {0}, H[NV*NU] = {0}, extend_1[4] = {0}, subtract_1[NV] = {0}, solve_1[NV] =
-        {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[12] = {0}, forces[NL*NL] = {0},
-        work[NV*PADDED(NV)];
-    verdict why;
+    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[12] = {0}, forces[NL*NL] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, &why);
-    for (size_t i = 0; i < 4; ++i) {
-        extend_1[i] = i < NW ? wrench[i] : 0;
-    }
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - extend_1[i];
-    }
-    eliminate_4(1, NV, order_tau, sizes_tau, H, subtract_1, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NV, 1, H, work);
-        solve_apart(NV, subtract_1, work, solve_1, why.singular);
-        check(NV, 1, solve_1, why.overflow);
-    }
+    flag_status(planar_redundant_inverse_dynamics(m, X, V, A, wrench, solve_1), &why);
     legs_run(m, X, V, A, leg_force, actuator, &why);
     for (size_t i = 0; i < NL*NL; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
-    check(NL*NL, 1, forces, why.overflow);
-    copy(NL*NL, forces, forces_out);
-    return settled(&why, NL*NL, forces_out);
+    return finished(NL*NL, forces, forces_out, &why);
 }
 
 int planar_redundant_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
     real *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -4837,8 +4232,8 @@ int planar_redundant_energy(const prepared *m, const real *X, const real *V, rea
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int planar_redundant_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -4848,9 +4243,9 @@ int planar_redundant_condition(const prepared *m, const real *X, real *sigma_out
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
         divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -4870,8 +4265,8 @@ int planar_redundant_condition(const prepared *m, const real *X, real *sigma_out
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int planar_redundant_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4881,13 +4276,12 @@ int planar_redundant_manipulability(const prepared *m, const real *X, real *meas
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
         = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4905,8 +4299,8 @@ int planar_redundant_manipulability(const prepared *m, const real *X, real *meas
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int planar_redundant_singularity_distance(const prepared *m, const real *X, real *actuators_out,
@@ -4916,13 +4310,12 @@ int planar_redundant_singularity_distance(const prepared *m, const real *X, real
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
         = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4940,59 +4333,55 @@ int planar_redundant_singularity_distance(const prepared *m, const real *X, real
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    static const size_t places_gap[] = {1, 2, 3};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[4] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
-    verdict why;
+    static const size_t places_residual[] = {1, 2, 3};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[4] = {0}, subtract_1[NU] = {0}, residual[NU] =
+        {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(4, 1, planar_redundant_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
         subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = subtract_1[i];
+        residual[i] = subtract_1[i];
     }
-    wrap_turns(3, 1, places_gap, gap);
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    wrap_turns(3, 1, places_residual, residual);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real slope[NV*NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope, why.overflow);
     }
     copy(NV*NU, slope, slope_out);
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -5004,21 +4393,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -5032,17 +4421,11 @@ int planar_redundant_forward_kinematics(const prepared *m, const real *q_actuate
     real *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int planar_redundant_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5051,213 +4434,157 @@ int planar_redundant_dissipation(const prepared *m, const real *X, const real *V
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int planar_redundant_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int planar_redundant_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int planar_redundant_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int planar_redundant_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, planar_redundant_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int planar_redundant_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, planar_redundant_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int planar_redundant_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, planar_redundant_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int planar_redundant_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int planar_redundant_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_2 = X + 2;
     rotation_of_angle(X_from_2, R);
-    check(4, 1, R, why.overflow);
-    copy(4, R, R_out);
-    return settled(&why, 4, R_out);
+    return finished(4, R, R_out, &why);
 }
 
 int planar_redundant_pose(const real *t, const real *R, real *X_out)
 {
     real angle_of_rotation_1[1] = {0}, join_1[3] = {0}, X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 2) + total(R, 4);
-    if (!is_finite(total_in)) {
-        check(2, 1, t, why.invalid);
-        check(4, 1, R, why.invalid);
-    }
+    check_two(2, t, 4, R, why.invalid);
     angle_of_rotation(R, angle_of_rotation_1);
     beside(1, 2, 1, t, angle_of_rotation_1, join_1);
     for (size_t i = 0; i < NQ; ++i) {
         X[i] = i < 3 ? join_1[i] : 0;
     }
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int planar_redundant_X_dot(const real *X, const real *V, real *X_dot_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const X_dot = V;
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int planar_redundant_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
+    check_two(NQ, X, NV, step, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int planar_redundant_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] = {0}, step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
+    check_two(NQ, X0, NQ, X1, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -5265,39 +4592,23 @@ int planar_redundant_difference(const real *X0, const real *X1, real *step_out)
         step[i] = subtract_1[i];
     }
     wrap_turns(1, 1, places_step, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int planar_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    static const size_t places_wrap_turns_1[] = {2};
-    real subtract_1[NQ] = {0}, wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
-    verdict why;
+    real wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    for (size_t i = 0; i < NQ; ++i) {
-        subtract_1[i] = X1[i] - X0[i];
-    }
-    for (size_t i = 0; i < NQ; ++i) {
-        wrap_turns_1[i] = subtract_1[i];
-    }
-    wrap_turns(1, 1, places_wrap_turns_1, wrap_turns_1);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(planar_redundant_difference(X0, X1, wrap_turns_1), &why);
     for (size_t i = 0; i < NQ; ++i) {
         scale_1[i] = wrap_turns_1[i]*s[i%(1)];
     }
     for (size_t i = 0; i < NQ; ++i) {
         X[i] = X0[i] + scale_1[i];
     }
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

@@ -200,7 +200,7 @@ int planar_redundant_inverse_kinematics(const planar_redundant_model *model, con
 size_t planar_redundant_inverse_kinematics_batch(const planar_redundant_model *model, size_t n,
     const planar_redundant_real *X, planar_redundant_real *q, int *status);
 
-/* Rates of all joints. 161 mul, 87 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 164 mul, 87 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int planar_redundant_joint_rates(const planar_redundant_model *model, const planar_redundant_real
     *X, const planar_redundant_real *V, planar_redundant_real *rates);
@@ -350,7 +350,7 @@ int planar_redundant_actuator_positions(const planar_redundant_model *model, con
 size_t planar_redundant_actuator_positions_batch(const planar_redundant_model *model, size_t n,
     const planar_redundant_real *X, planar_redundant_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 161 mul, 87 add, 6 div, 3 sqrt, 0 trig. In:
+/* Rates of the actuated joints, in the order of tau. 164 mul, 87 add, 6 div, 3 sqrt, 0 trig. In:
    X (NQ), V (NV). Out: rates (NU). */
 int planar_redundant_actuator_rates(const planar_redundant_model *model, const
     planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *rates);

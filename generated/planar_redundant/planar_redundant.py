@@ -1709,11 +1709,11 @@ def _extended(a, size):
     return np.concatenate((a, np.zeros((size - len(a), a.shape[1]))))
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1936,8 +1936,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1945,7 +1945,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1953,11 +1953,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -2039,9 +2039,12 @@ def _run_dynamics(m, X, V):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
+    # (f_p) inertia force of the platform less its weight
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = W_p_xx*h_star_y
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = W_p_xx*h_star_x - Z_p_t
-    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
+    Z_p_x = f_p_t - Z_p_t
+    Z_p_y = f_p_t_2 - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     (
@@ -2136,13 +2139,15 @@ def _run_dynamics(m, X, V):
         -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
             axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
         )
+        # (prrr-qd_3) rate of joint 3
+        prrr_qd_3 = (
+        prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
+        )
         # (prrr-W_2) centripetal tensor of link 2
         prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
         # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_in_axes3_z = (
-        prrr_qd_2 + prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
-        )
+        prrr_omega_3_in_axes3_z = prrr_qd_2 + prrr_qd_3
         # (prrr-W_3) centripetal tensor of link 3
         prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
         # (prrr-u_1) centripetal acceleration of the connection point
@@ -2151,15 +2156,14 @@ def _run_dynamics(m, X, V):
         prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*prrr_u_1_x + axis_y_prrr_axes3_x*prrr_u_1_t
         prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*prrr_u_1_x - axis_x_prrr_axes3_x*prrr_u_1_t
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_in_axes3_y = prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
         prrr_bias_in_axes3_x = (
         prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
             prrr_W_3_t*prrr_platform_joint_offset_x
         )
         # (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x
-        prrr_rel_o_in_axes3_y = (
-        prrr_u_1_in_axes3_y - prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
-        )
+        prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y - prrr_bias_in_axes3_y
         # (prrr-B_2_o) remainder of the acceleration tensor of link 2
         prrr_B_2_o_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x
         # (prrr-alpha_3_o) remainder of: angular acceleration of link 3
@@ -2167,24 +2171,27 @@ def _run_dynamics(m, X, V):
         prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y + prrr_B_2_o_in_axes2_xy*prrr_r_2_in_axes3_x) -
             prrr_B_2_o_in_axes2_xy
         )
-        # (prrr-f_2_o) remainder of: inertia force of link 2 less its weight
+        # (prrr-acc_2) acceleration of the reference point of link 2, less gravity
         prrr_g_in_axes2_x = prrr_acc_1_in_axes0_y*prrr_c_2 + prrr_g_in_axes0_x*prrr_s_2
         prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_x - prrr_acc_1_in_axes0_y*prrr_s_2
+        # (prrr-f_2) inertia force of link 2 less its weight
+        prrr_f_2_t = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x
+        prrr_f_2_t_2 = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y
+        # (prrr-f_2_o) remainder of: inertia force of link 2 less its weight
         prrr_f_2_o_in_axes2_x = (
-        prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y + prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x -
+        prrr_f_2_t + prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y -
             prrr_g_in_axes2_x*prrr_link2_mass
         )
         prrr_f_2_o_in_axes2_y = (
-        prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y - prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x -
+        prrr_f_2_t_2 - prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x -
             prrr_g_in_axes2_y*prrr_link2_mass
         )
+        # (prrr-acc_3) acceleration of the reference point of link 3, less gravity
+        prrr_g_in_axes3_x = axis_x_prrr_axes3_x*gravity_x - axis_y_prrr_axes3_x*gravity_y
+        prrr_g_in_axes3_y = axis_x_prrr_axes3_x*gravity_y + axis_y_prrr_axes3_x*gravity_x
         # (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        prrr_acc_3_o_in_axes3_x = (
-        prrr_u_1_in_axes3_x + axis_y_prrr_axes3_x*gravity_y - axis_x_prrr_axes3_x*gravity_x
-        )
-        prrr_acc_3_o_in_axes3_y = (
-        prrr_u_1_in_axes3_y - axis_x_prrr_axes3_x*gravity_y - axis_y_prrr_axes3_x*gravity_x
-        )
+        prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_g_in_axes3_x
+        prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y - prrr_g_in_axes3_y
         # (prrr-P_c_2) force that accelerates joint 2, per unit
         prrr_P_c_2_in_axes0_x = prrr_c_2*prrr_h_2_in_spec2_x - prrr_h_2_in_spec2_y*prrr_s_2
         # (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
@@ -2242,16 +2249,17 @@ def _run_dynamics(m, X, V):
         prrr_G_o_in_axes3_x = (
         inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_o_in_axes2_z)
         )
+        # (prrr-c) leg force on the platform without actuation and without the mass at the connection point
+        prrr_c_t = prrr_W_3_t*prrr_h_3_in_spec3_x
+        prrr_c_t_2 = prrr_W_3_t*prrr_h_3_in_spec3_y
         # (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         prrr_d_c_in_axes3_xy = prrr_d_phi_3_t - prrr_d_G_in_axes3_xy
         # (prrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prrr_c_o_in_axes3_x = (
-        prrr_W_3_t*prrr_h_3_in_spec3_x + prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y -
-            prrr_G_o_in_axes3_x
+        prrr_c_t + prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_x
         )
         prrr_c_o_in_axes3_y = (
-        prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_y -
-            prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_x
+        prrr_c_t_2 - prrr_G_o_in_axes3_y - prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_x
         )
         # (prrr-Q) inertia of the leg at the connection point, without the mass gathered there
         prrr_Q_t = (
@@ -2414,13 +2422,15 @@ def _run_dynamics(m, X, V):
         rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
-            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -2429,12 +2439,13 @@ def _run_dynamics(m, X, V):
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
@@ -2442,13 +2453,12 @@ def _run_dynamics(m, X, V):
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_in_axes2_x = (
-        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_o_in_axes2_y = (
-        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
@@ -2459,12 +2469,12 @@ def _run_dynamics(m, X, V):
         rrr_d_Gamma_2_in_axes2_x = (
         -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2)
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = -rrr_mu_1_t_3 - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
@@ -2473,6 +2483,9 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
         inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y - rrr_d_phi_2_in_axes2_xy -
@@ -2480,12 +2493,11 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_Q_t = (
@@ -2647,13 +2659,18 @@ def _run_M(m, X):
         prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
         prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
         # (prrr-w_2) reciprocal vector 1
+        prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        axis_y_prrr_axes3_x = (
+        prrr_base_frame_xx*prrr_w_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
+        )
+        axis_x_prrr_axes3_x = (
+        prrr_base_frame_yx*prrr_w_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
+        )
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
+        prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*prrr_w_2_t
         # (prrr-w_3) reciprocal vector 2
         prrr_w_3_in_axes3_x = inv_prrr_r_2_in_axes3_y*prrr_r_2_in_axes3_x*prrr_w_3_in_axes3_y
-        # (prrr-dy_1_rel) coefficient of the acceleration in: acceleration of the connection point left to the joint accelerations
-        prrr_dy_1_rel_in_axes3_x = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
-        # (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2
-        prrr_dy_1_qdd_2 = -inv_prrr_r_2_in_axes3_y*prrr_dy_1_rel_in_axes3_x
         # (prrr-P_c_2) force that accelerates joint 2, per unit
         prrr_P_c_2_in_axes0_x = prrr_c_2*prrr_h_2_in_spec2_x - prrr_h_2_in_spec2_y*prrr_s_2
         # (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
@@ -2662,15 +2679,14 @@ def _run_M(m, X):
         -prrr_h_3_in_spec3_y - inv_prrr_r_2_in_axes3_y*(prrr_J_3_in_spec3_zz - prrr_d_Gamma_3_t_2)
         )
         # (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
         prrr_dy_1_Gamma_3_t = (
         prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(prrr_e_1_in_axes3_y +
-            prrr_dy_1_qdd_2*prrr_r_2_in_axes3_x)
+            prrr_r_2_in_axes3_x*prrr_w_2_t_2)
         )
-        prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t
+        prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t
         # (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         prrr_dy_1_Gamma_2 = (
-        prrr_P_c_2_in_axes0_x + prrr_Jc_2_in_axes2_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t
+        prrr_P_c_2_in_axes0_x + prrr_Jc_2_in_axes2_zz*prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t
         )
         # (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         prrr_d_Gamma_2_in_axes3_x = (
@@ -2678,7 +2694,7 @@ def _run_M(m, X):
             prrr_d_Gamma_3_t_2)
         )
         # (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x + prrr_P_c_2_in_axes0_x*prrr_dy_1_qdd_2
+        prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x + prrr_P_c_2_in_axes0_x*prrr_w_2_t_2
         # (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*prrr_w_3_in_axes3_y
         # (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -2693,12 +2709,6 @@ def _run_M(m, X):
         # (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         prrr_d_c_in_axes3_xy = prrr_d_phi_3_t - prrr_d_G_in_axes3_xy
         # (prrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prrr_axes3_x = (
-        prrr_base_frame_xx*prrr_dy_1_rel_in_axes3_x + prrr_base_frame_xy*prrr_e_1_in_axes3_y
-        )
-        axis_x_prrr_axes3_x = (
-        prrr_base_frame_yx*prrr_dy_1_rel_in_axes3_x + prrr_base_frame_yy*prrr_e_1_in_axes3_y
-        )
         prrr_Q_t = (
         prrr_h_3_in_spec3_y*(prrr_w_3_in_axes3_x - inv_prrr_r_2_in_axes3_y) - prrr_d_G_in_axes3_xx
             - prrr_d_c_in_axes3_yy
@@ -2711,17 +2721,16 @@ def _run_M(m, X):
         prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2.0*axis_y_prrr_axes3_x*prrr_Q_t_4
         # (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
         prrr_dy_1_P_1_t = (
-        inv_prrr_r_2_in_axes3_y*prrr_dy_1_rel_in_axes3_x*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x
-            - prrr_dy_1_Gamma_2) - prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y
+        inv_prrr_r_2_in_axes3_y*prrr_w_2_t*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x -
+            prrr_dy_1_Gamma_2) - prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y
         )
         prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 + prrr_dy_1_P_1_t
         # (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
         prrr_d_P_1_in_axes3_y = (
-        prrr_d_G_in_axes3_xy*prrr_dy_1_rel_in_axes3_x - prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y
+        prrr_d_G_in_axes3_xy*prrr_w_2_t - prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y
         )
         prrr_d_P_1_in_axes3_x = (
-        prrr_d_G_in_axes3_xx*prrr_dy_1_rel_in_axes3_x -
-            inv_prrr_r_2_in_axes3_y*prrr_P_c_2_in_axes0_x -
+        prrr_d_G_in_axes3_xx*prrr_w_2_t - inv_prrr_r_2_in_axes3_y*prrr_P_c_2_in_axes0_x -
             prrr_d_Gamma_3_in_axes3_x*prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y
         )
         prrr_d_P_1_x = (
@@ -2808,6 +2817,10 @@ def _run_M(m, X):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
@@ -2826,21 +2839,17 @@ def _run_M(m, X):
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx
-        axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx
-        rrr_Q_t_3 = (
+        rrr_Q_t = (
         inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x + rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x -
             inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy -
             rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
         )
-        rrr_Q_t_4 = 0.5*rrr_Q_t_3
-        rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_6
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
         # (M_ta) coupling block of M
         rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
         rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
@@ -2912,9 +2921,12 @@ def _run_Z(m, X, V):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
+    # (f_p) inertia force of the platform less its weight
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = W_p_xx*h_star_y
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = W_p_xx*h_star_x - Z_p_t
-    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
+    Z_p_x = f_p_t - Z_p_t
+    Z_p_y = f_p_t_2 - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     Z_t_prrr_x, Z_t_prrr_y, Z_a_prrr_z = [0.0] * 3
@@ -2982,30 +2994,32 @@ def _run_Z(m, X, V):
         prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
         prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
         # (prrr-w_2) reciprocal vector 1
+        prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        axis_y_prrr_axes3_x = (
+        prrr_base_frame_xx*prrr_w_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
+        )
+        axis_x_prrr_axes3_x = (
+        prrr_base_frame_yx*prrr_w_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
+        )
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
         # (prrr-qd_2) rate of joint 2
-        prrr_qd_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
-        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
-        axis_y_prrr_axes3_x = (
-        prrr_base_frame_xx*prrr_qd_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
-        )
-        axis_x_prrr_axes3_x = (
-        prrr_base_frame_yx*prrr_qd_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
-        )
         prrr_qd_2 = (
         -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
             axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
         )
+        # (prrr-qd_3) rate of joint 3
+        prrr_qd_3 = (
+        prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
+        )
         # (prrr-W_2) centripetal tensor of link 2
         prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
         # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_in_axes3_z = (
-        prrr_qd_2 + prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
-        )
+        prrr_omega_3_in_axes3_z = prrr_qd_2 + prrr_qd_3
         # (prrr-W_3) centripetal tensor of link 3
         prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
         # (prrr-u_1) centripetal acceleration of the connection point
@@ -3014,15 +3028,14 @@ def _run_Z(m, X, V):
         prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*prrr_u_1_x + axis_y_prrr_axes3_x*prrr_u_1_t
         prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*prrr_u_1_x - axis_x_prrr_axes3_x*prrr_u_1_t
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_in_axes3_y = prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
         prrr_bias_in_axes3_x = (
         prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
             prrr_W_3_t*prrr_platform_joint_offset_x
         )
         # (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x
-        prrr_rel_o_in_axes3_y = (
-        prrr_u_1_in_axes3_y - prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
-        )
+        prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y - prrr_bias_in_axes3_y
         # (prrr-B_2_o) remainder of the acceleration tensor of link 2
         prrr_B_2_o_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x
         # (prrr-alpha_3_o) remainder of: angular acceleration of link 3
@@ -3030,24 +3043,27 @@ def _run_Z(m, X, V):
         prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y + prrr_B_2_o_in_axes2_xy*prrr_r_2_in_axes3_x) -
             prrr_B_2_o_in_axes2_xy
         )
-        # (prrr-f_2_o) remainder of: inertia force of link 2 less its weight
+        # (prrr-acc_2) acceleration of the reference point of link 2, less gravity
         prrr_g_in_axes2_x = prrr_acc_1_in_axes0_y*prrr_c_2 + prrr_g_in_axes0_x*prrr_s_2
         prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_x - prrr_acc_1_in_axes0_y*prrr_s_2
+        # (prrr-f_2) inertia force of link 2 less its weight
+        prrr_f_2_t = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x
+        prrr_f_2_t_2 = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y
+        # (prrr-f_2_o) remainder of: inertia force of link 2 less its weight
         prrr_f_2_o_in_axes2_x = (
-        prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y + prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x -
+        prrr_f_2_t + prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y -
             prrr_g_in_axes2_x*prrr_link2_mass
         )
         prrr_f_2_o_in_axes2_y = (
-        prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y - prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x -
+        prrr_f_2_t_2 - prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x -
             prrr_g_in_axes2_y*prrr_link2_mass
         )
+        # (prrr-acc_3) acceleration of the reference point of link 3, less gravity
+        prrr_g_in_axes3_x = axis_x_prrr_axes3_x*gravity_x - axis_y_prrr_axes3_x*gravity_y
+        prrr_g_in_axes3_y = axis_x_prrr_axes3_x*gravity_y + axis_y_prrr_axes3_x*gravity_x
         # (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        prrr_acc_3_o_in_axes3_x = (
-        prrr_u_1_in_axes3_x + axis_y_prrr_axes3_x*gravity_y - axis_x_prrr_axes3_x*gravity_x
-        )
-        prrr_acc_3_o_in_axes3_y = (
-        prrr_u_1_in_axes3_y - axis_x_prrr_axes3_x*gravity_y - axis_y_prrr_axes3_x*gravity_x
-        )
+        prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_g_in_axes3_x
+        prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y - prrr_g_in_axes3_y
         # (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         prrr_mu_3_o_in_axes3_z = (
         prrr_J_3_in_spec3_zz*prrr_alpha_3_o_in_axes3_z +
@@ -3070,14 +3086,15 @@ def _run_Z(m, X, V):
         prrr_G_o_in_axes3_x = (
         inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_o_in_axes2_z)
         )
+        # (prrr-c) leg force on the platform without actuation and without the mass at the connection point
+        prrr_c_t = prrr_W_3_t*prrr_h_3_in_spec3_x
+        prrr_c_t_2 = prrr_W_3_t*prrr_h_3_in_spec3_y
         # (prrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prrr_c_o_in_axes3_x = (
-        prrr_W_3_t*prrr_h_3_in_spec3_x + prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y -
-            prrr_G_o_in_axes3_x
+        prrr_c_t + prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_x
         )
         prrr_c_o_in_axes3_y = (
-        prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_y -
-            prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_x
+        prrr_c_t_2 - prrr_G_o_in_axes3_y - prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_x
         )
         # (prrr-U) velocity and gravity terms of the leg force
         prrr_U_x = (
@@ -3087,7 +3104,7 @@ def _run_Z(m, X, V):
         axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x - axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y
         )
         # (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of joint 1
-        prrr_P_1_o_t = prrr_G_o_in_axes3_x*prrr_qd_2_t - prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y
+        prrr_P_1_o_t = prrr_G_o_in_axes3_x*prrr_w_2_t - prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y
         prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x
         # (Z_a) rotational part of Z
         prrr_Z_a_t = prrr_U_y*prrr_q_x - prrr_U_x*prrr_q_y
@@ -3155,22 +3172,24 @@ def _run_Z(m, X, V):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
-        rrr_qd_1_t_3 = (
+        rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
-            rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -3179,12 +3198,13 @@ def _run_Z(m, X, V):
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
@@ -3192,36 +3212,37 @@ def _run_Z(m, X, V):
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_in_axes2_x = (
-        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_o_in_axes2_y = (
-        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = -rrr_mu_1_t_3 - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-U) velocity and gravity terms of the leg force
         rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
@@ -3315,23 +3336,22 @@ def _run_H(m, X):
         inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
         # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
         prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_in_axes3_y = (
-        prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3_t
-        )
+        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
         # (prrr-w_2) reciprocal vector 1
         prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
         prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        axis_y_prrr_axes3_x = (
+        prrr_base_frame_xx*prrr_w_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
+        )
+        axis_x_prrr_axes3_x = (
+        prrr_base_frame_yx*prrr_w_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
+        )
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*prrr_w_2_t
-        prrr_w_2_x = (
-        -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yx*prrr_w_2_t +
-            prrr_base_frame_yy*prrr_e_1_in_axes3_y)
-        )
-        prrr_w_2_y = (
-        inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xx*prrr_w_2_t +
-            prrr_base_frame_xy*prrr_e_1_in_axes3_y)
-        )
+        prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
+        prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
         prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x
         ok = (
@@ -3386,20 +3406,17 @@ def _run_H(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = (
-        -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
@@ -3455,8 +3472,10 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     # (f_p) inertia force of the platform less its weight
-    f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y
-    f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = W_p_xx*h_star_y
+    f_p_x = f_p_t + a_t_x*m_star - alpha_z*h_star_y
+    f_p_y = f_p_t_2 + a_t_y*m_star + alpha_z*h_star_x
     # (mu_p) inertia moment of the platform less that of its weight
     mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_a_prrr_z = [0.0] * 3
@@ -3544,21 +3563,26 @@ def _run_required(m, X, V, A):
         -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
             axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
         )
+        # (prrr-qd_3) rate of joint 3
+        prrr_qd_3 = (
+        prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
+        )
         # (prrr-W_2) centripetal tensor of link 2
         prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
         # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_in_axes3_z = (
-        prrr_qd_2 + prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
-        )
+        prrr_omega_3_in_axes3_z = prrr_qd_2 + prrr_qd_3
         # (prrr-W_3) centripetal tensor of link 3
         prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
+        # (prrr-u_1) centripetal acceleration of the connection point
+        prrr_u_1_x = -omega_z*prrr_S_dot_t_2
+        prrr_u_1_t = omega_z*prrr_S_dot_t
         # (prrr-a_p) acceleration of the connection point without its centripetal part
         prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_y
         prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_x
         # (prrr-S_ddot) acceleration of the connection point
-        prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2
-        prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t
+        prrr_S_ddot_x = prrr_a_p_x + prrr_u_1_x
+        prrr_S_ddot_y = prrr_a_p_y - prrr_u_1_t
         prrr_S_ddot_in_axes3_x = (
         axis_x_prrr_axes3_x*prrr_S_ddot_x - axis_y_prrr_axes3_x*prrr_S_ddot_y
         )
@@ -3566,6 +3590,7 @@ def _run_required(m, X, V, A):
         axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x
         )
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_in_axes3_y = prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
         prrr_bias_in_axes3_x = (
         prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
             prrr_W_3_t*prrr_platform_joint_offset_x
@@ -3575,41 +3600,35 @@ def _run_required(m, X, V, A):
         prrr_S_ddot_in_axes3_x + prrr_w_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x
         )
         prrr_rel_in_axes3_y = (
-        prrr_S_ddot_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1 -
-            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
+        prrr_S_ddot_in_axes3_y - prrr_bias_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1
         )
-        # (prrr-B_2) acceleration tensor of link 2
-        prrr_B_2_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x
+        # (prrr-qdd_2) acceleration of joint 2
+        prrr_qdd_2_t = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x
+        # (prrr-qdd_3) acceleration of joint 3
+        prrr_qdd_3 = prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y + prrr_qdd_2_t*prrr_r_2_in_axes3_x)
         # (prrr-alpha_3) angular acceleration of link 3
-        prrr_alpha_3_in_axes3_z = (
-        prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y + prrr_B_2_in_axes2_xy*prrr_r_2_in_axes3_x) -
-            prrr_B_2_in_axes2_xy
-        )
+        prrr_alpha_3_in_axes3_z = prrr_qdd_3 - prrr_qdd_2_t
         # (prrr-acc_1) acceleration of the reference point of link 1, less gravity
         prrr_acc_1_in_axes0_x = prrr_ydd_1 - prrr_g_in_axes0_x
         # (prrr-acc_2) acceleration of the reference point of link 2, less gravity
-        prrr_acc_2_in_axes2_x = (
-        prrr_s_2*prrr_ydd_1 - prrr_acc_1_in_axes0_y*prrr_c_2 - prrr_g_in_axes0_x*prrr_s_2
-        )
-        prrr_acc_2_in_axes2_y = (
-        prrr_acc_1_in_axes0_y*prrr_s_2 + prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_in_axes0_x
-        )
+        prrr_g_in_axes2_x = prrr_acc_1_in_axes0_y*prrr_c_2 + prrr_g_in_axes0_x*prrr_s_2
+        prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_x - prrr_acc_1_in_axes0_y*prrr_s_2
+        prrr_acc_2_in_axes2_x = prrr_s_2*prrr_ydd_1 - prrr_g_in_axes2_x
+        prrr_acc_2_in_axes2_y = prrr_c_2*prrr_ydd_1 - prrr_g_in_axes2_y
         # (prrr-f_2) inertia force of link 2 less its weight
+        prrr_f_2_t = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x
+        prrr_f_2_t_2 = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y
         prrr_f_2_in_axes2_x = (
-        prrr_B_2_in_axes2_xy*prrr_h_2_in_spec2_y + prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x +
-            prrr_acc_2_in_axes2_x*prrr_link2_mass
+        prrr_f_2_t + prrr_acc_2_in_axes2_x*prrr_link2_mass + prrr_h_2_in_spec2_y*prrr_qdd_2_t
         )
         prrr_f_2_in_axes2_y = (
-        prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y + prrr_acc_2_in_axes2_y*prrr_link2_mass -
-            prrr_B_2_in_axes2_xy*prrr_h_2_in_spec2_x
+        prrr_f_2_t_2 + prrr_acc_2_in_axes2_y*prrr_link2_mass - prrr_h_2_in_spec2_x*prrr_qdd_2_t
         )
         # (prrr-acc_3) acceleration of the reference point of link 3, less gravity
-        prrr_acc_3_in_axes3_x = (
-        prrr_S_ddot_in_axes3_x + axis_y_prrr_axes3_x*gravity_y - axis_x_prrr_axes3_x*gravity_x
-        )
-        prrr_acc_3_in_axes3_y = (
-        prrr_S_ddot_in_axes3_y - axis_x_prrr_axes3_x*gravity_y - axis_y_prrr_axes3_x*gravity_x
-        )
+        prrr_g_in_axes3_x = axis_x_prrr_axes3_x*gravity_x - axis_y_prrr_axes3_x*gravity_y
+        prrr_g_in_axes3_y = axis_x_prrr_axes3_x*gravity_y + axis_y_prrr_axes3_x*gravity_x
+        prrr_acc_3_in_axes3_x = prrr_S_ddot_in_axes3_x - prrr_g_in_axes3_x
+        prrr_acc_3_in_axes3_y = prrr_S_ddot_in_axes3_y - prrr_g_in_axes3_y
         # (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points
         prrr_mu_3_in_axes3_z = (
         prrr_J_3_in_spec3_zz*prrr_alpha_3_in_axes3_z + prrr_acc_3_in_axes3_y*prrr_h_3_in_spec3_x -
@@ -3617,7 +3636,7 @@ def _run_required(m, X, V, A):
         )
         # (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         prrr_mu_2_in_axes2_z = (
-        prrr_acc_2_in_axes2_y*prrr_h_2_in_spec2_x - prrr_B_2_in_axes2_xy*prrr_J_2_in_spec2_zz -
+        prrr_acc_2_in_axes2_y*prrr_h_2_in_spec2_x - prrr_J_2_in_spec2_zz*prrr_qdd_2_t -
             prrr_acc_2_in_axes2_x*prrr_h_2_in_spec2_y
         )
         # (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
@@ -3633,13 +3652,13 @@ def _run_required(m, X, V, A):
         inv_prrr_r_2_in_axes3_y*(prrr_G_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_in_axes2_z)
         )
         # (prrr-c) leg force on the platform without actuation and without the mass at the connection point
+        prrr_c_t = prrr_W_3_t*prrr_h_3_in_spec3_x
+        prrr_c_t_2 = prrr_W_3_t*prrr_h_3_in_spec3_y
         prrr_c_in_axes3_x = (
-        prrr_W_3_t*prrr_h_3_in_spec3_x + prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y -
-            prrr_G_in_axes3_x
+        prrr_c_t + prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_in_axes3_x
         )
         prrr_c_in_axes3_y = (
-        prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_in_axes3_y -
-            prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_x
+        prrr_c_t_2 - prrr_G_in_axes3_y - prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_x
         )
         prrr_c_x = axis_x_prrr_axes3_x*prrr_c_in_axes3_x + axis_y_prrr_axes3_x*prrr_c_in_axes3_y
         prrr_c_y = axis_x_prrr_axes3_x*prrr_c_in_axes3_y - axis_y_prrr_axes3_x*prrr_c_in_axes3_x
@@ -3734,67 +3753,70 @@ def _run_required(m, X, V, A):
         rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
-            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_in_axes2_y
         rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_in_axes2_x
@@ -3855,12 +3877,10 @@ def _run_inverse_kinematics(m, X):
         ) = k
         prrr_y_1_extra = X[[3][leg]]
         # (prrr-S) from the base point to the connection point
-        prrr_S_x = (
-        t_x + R_xx*prrr_platform_point_x - prrr_base_point_x - R_yx*prrr_platform_point_y
-        )
-        prrr_S_y = (
-        t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x - prrr_base_point_y
-        )
+        prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_y + t_y - prrr_base_point_y
         prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
         # (prrr-x_2) from the origin of joint 2 to the connection point
         prrr_x_2_in_axes0_x = (
@@ -3881,21 +3901,25 @@ def _run_inverse_kinematics(m, X):
         prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
         # (prrr-root_2) root, with the sign of the branch
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
-        # (prrr-q_2) displacement of joint 2
+        # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
-        prrr_q_2 = (
-        atan2(-inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2),
-            -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2))
-        )
+        prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2)
+        # (prrr-s_2) sine of the angle of joint 2 from its reference direction
+        prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2)
+        # (prrr-q_2) displacement of joint 2
+        prrr_q_2 = atan2(prrr_s_2, prrr_c_2)
         # (prrr-x_3) from the origin of joint 3 to the connection point
         prrr_x_3_in_axes2_x = (
         inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
         )
-        # (prrr-q_3) displacement of joint 3
-        prrr_q_3 = (
-        atan2(-inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2,
-            inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x)
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3_t = (
+        inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
+        # (prrr-q_3) displacement of joint 3
+        prrr_q_3 = atan2(-prrr_s_3_t, prrr_c_3)
         ok = (
         ok & (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) & (prrr_disc_2 >= 0.0)
         )
@@ -3913,8 +3937,10 @@ def _run_inverse_kinematics(m, X):
             rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
@@ -3928,19 +3954,23 @@ def _run_inverse_kinematics(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-q_1) displacement of joint 1
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
-        rrr_q_1 = (
-        atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
-            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
-        )
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-q_1) displacement of joint 1
+        rrr_q_1 = atan2(rrr_s_1, rrr_c_1)
         # (rrr-x_2) from the origin of joint 2 to the connection point
         rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-q_2) displacement of joint 2
-        rrr_q_2 = (
-        atan2(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x)
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-q_2) displacement of joint 2
+        rrr_q_2 = atan2(rrr_s_2, rrr_c_2)
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
@@ -3949,7 +3979,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 161 mul, 87 add, 6 div, 3 sqrt, 0 trig
+# joint_rates: 164 mul, 87 add, 6 div, 3 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -4023,33 +4053,37 @@ def _run_joint_rates(m, X, V):
         inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
         # (prrr-S_dot) velocity of the connection point
-        prrr_S_dot_x = t_dot_x - omega_z*prrr_q_y
-        prrr_S_dot_y = t_dot_y + omega_z*prrr_q_x
+        prrr_S_dot_t = omega_z*prrr_q_y
+        prrr_S_dot_t_2 = omega_z*prrr_q_x
+        prrr_S_dot_x = t_dot_x - prrr_S_dot_t
+        prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
         # (prrr-r_2) from joint 2 to the connection point, along the links
         prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
         prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
         prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        # (prrr-w_2) reciprocal vector 1
+        prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        axis_y_prrr_axes3_x = (
+        prrr_base_frame_xx*prrr_w_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
+        )
+        axis_x_prrr_axes3_x = (
+        prrr_base_frame_yx*prrr_w_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
+        )
+        inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
         # (prrr-qd_2) rate of joint 2
-        prrr_qd_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
-        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
-        axis_y_prrr_axes3_x = (
-        prrr_base_frame_xx*prrr_qd_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
-        )
-        axis_x_prrr_axes3_x = (
-        prrr_base_frame_yx*prrr_qd_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
-        )
         prrr_qd_2 = (
-        -(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)/prrr_r_2_in_axes3_y
+        -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
         )
         # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
         prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*(prrr_c_3*prrr_r_2_in_axes2_x +
-            prrr_r_2_t*prrr_s_3_t))
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
         )
         ok = (
         ok & (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) & (prrr_disc_2 >= 0.0) &
@@ -4101,31 +4135,36 @@ def _run_joint_rates(m, X, V):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y
-        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
         rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
-        rrr_qd_1_t_3 = (
-        (axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y
+        rrr_qd_1_t = (
+        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
-            rrr_qd_1_t_3*(rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2))
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-qd_1) rate of joint 1
-        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1_t_3
+        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1_t
         # (rrr-qd_2) rate of joint 2
         out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     return ok, (out_qd,)
@@ -4223,49 +4262,61 @@ def _run_joint_accelerations(m, X, V, A):
         prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
         prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
         # (prrr-w_2) reciprocal vector 1
+        prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        axis_y_prrr_axes3_x = (
+        prrr_base_frame_xx*prrr_w_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
+        )
+        axis_x_prrr_axes3_x = (
+        prrr_base_frame_yx*prrr_w_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
+        )
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
         # (prrr-qd_2) rate of joint 2
-        prrr_qd_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
-        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
-        axis_y_prrr_axes3_x = (
-        prrr_base_frame_xx*prrr_qd_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
-        )
-        axis_x_prrr_axes3_x = (
-        prrr_base_frame_yx*prrr_qd_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
-        )
         prrr_qd_2 = (
         -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
             axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
         )
+        # (prrr-qd_3) rate of joint 3
+        prrr_qd_3 = (
+        prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
+        )
         # (prrr-W_2) centripetal tensor of link 2
         prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
         # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_in_axes3_z = (
-        prrr_qd_2 + prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
-        )
+        prrr_omega_3_in_axes3_z = prrr_qd_2 + prrr_qd_3
+        # (prrr-W_3) centripetal tensor of link 3
+        prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
+        # (prrr-u_1) centripetal acceleration of the connection point
+        prrr_u_1_x = -omega_z*prrr_S_dot_t_2
+        prrr_u_1_t = omega_z*prrr_S_dot_t
         # (prrr-a_p) acceleration of the connection point without its centripetal part
         prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_y
         prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_x
         # (prrr-S_ddot) acceleration of the connection point
-        prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2
-        prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t
+        prrr_S_ddot_x = prrr_a_p_x + prrr_u_1_x
+        prrr_S_ddot_y = prrr_a_p_y - prrr_u_1_t
+        prrr_S_ddot_in_axes3_x = (
+        axis_x_prrr_axes3_x*prrr_S_ddot_x - axis_y_prrr_axes3_x*prrr_S_ddot_y
+        )
+        prrr_S_ddot_in_axes3_y = (
+        axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x
+        )
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_in_axes3_y = prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
         prrr_bias_in_axes3_x = (
         prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
-            prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x
+            prrr_W_3_t*prrr_platform_joint_offset_x
         )
         # (prrr-rel) acceleration of the connection point left to the joint accelerations
         prrr_rel_in_axes3_x = (
-        axis_x_prrr_axes3_x*prrr_S_ddot_x + prrr_qd_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x -
-            axis_y_prrr_axes3_x*prrr_S_ddot_y
+        prrr_S_ddot_in_axes3_x + prrr_w_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x
         )
         prrr_rel_in_axes3_y = (
-        axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x -
-            prrr_e_1_in_axes3_y*prrr_ydd_1 - prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
+        prrr_S_ddot_in_axes3_y - prrr_bias_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1
         )
         # (prrr-qdd_2) acceleration of joint 2
         prrr_qdd_2_t = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x
@@ -4331,41 +4382,45 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
-        rrr_qd_1_t_3 = (
+        rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
-            rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
+        # (rrr-W_1) centripetal tensor of link 1
+        rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
-        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_in_axes2_x = (
-        axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
-        )
-        rrr_rel_in_axes2_y = (
-        axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        )
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-qdd_1) acceleration of joint 1
         rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
@@ -4496,21 +4551,26 @@ def _run_legs(m, X, V, A):
         -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
             axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
         )
+        # (prrr-qd_3) rate of joint 3
+        prrr_qd_3 = (
+        prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
+        )
         # (prrr-W_2) centripetal tensor of link 2
         prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
         # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_in_axes3_z = (
-        prrr_qd_2 + prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
-        )
+        prrr_omega_3_in_axes3_z = prrr_qd_2 + prrr_qd_3
         # (prrr-W_3) centripetal tensor of link 3
         prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
+        # (prrr-u_1) centripetal acceleration of the connection point
+        prrr_u_1_x = -omega_z*prrr_S_dot_t_2
+        prrr_u_1_t = omega_z*prrr_S_dot_t
         # (prrr-a_p) acceleration of the connection point without its centripetal part
         prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_y
         prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_x
         # (prrr-S_ddot) acceleration of the connection point
-        prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2
-        prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t
+        prrr_S_ddot_x = prrr_a_p_x + prrr_u_1_x
+        prrr_S_ddot_y = prrr_a_p_y - prrr_u_1_t
         prrr_S_ddot_in_axes3_x = (
         axis_x_prrr_axes3_x*prrr_S_ddot_x - axis_y_prrr_axes3_x*prrr_S_ddot_y
         )
@@ -4518,6 +4578,7 @@ def _run_legs(m, X, V, A):
         axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x
         )
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_in_axes3_y = prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
         prrr_bias_in_axes3_x = (
         prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
             prrr_W_3_t*prrr_platform_joint_offset_x
@@ -4527,30 +4588,24 @@ def _run_legs(m, X, V, A):
         prrr_S_ddot_in_axes3_x + prrr_w_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x
         )
         prrr_rel_in_axes3_y = (
-        prrr_S_ddot_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1 -
-            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
+        prrr_S_ddot_in_axes3_y - prrr_bias_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1
         )
-        # (prrr-B_2) acceleration tensor of link 2
-        prrr_B_2_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x
+        # (prrr-qdd_2) acceleration of joint 2
+        prrr_qdd_2_t = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x
+        # (prrr-qdd_3) acceleration of joint 3
+        prrr_qdd_3 = prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y + prrr_qdd_2_t*prrr_r_2_in_axes3_x)
         # (prrr-alpha_3) angular acceleration of link 3
-        prrr_alpha_3_in_axes3_z = (
-        prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y + prrr_B_2_in_axes2_xy*prrr_r_2_in_axes3_x) -
-            prrr_B_2_in_axes2_xy
-        )
+        prrr_alpha_3_in_axes3_z = prrr_qdd_3 - prrr_qdd_2_t
         # (prrr-acc_2) acceleration of the reference point of link 2, less gravity
-        prrr_acc_2_in_axes2_x = (
-        prrr_s_2*prrr_ydd_1 - prrr_acc_1_in_axes0_y*prrr_c_2 - prrr_g_in_axes0_x*prrr_s_2
-        )
-        prrr_acc_2_in_axes2_y = (
-        prrr_acc_1_in_axes0_y*prrr_s_2 + prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_in_axes0_x
-        )
+        prrr_g_in_axes2_x = prrr_acc_1_in_axes0_y*prrr_c_2 + prrr_g_in_axes0_x*prrr_s_2
+        prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_x - prrr_acc_1_in_axes0_y*prrr_s_2
+        prrr_acc_2_in_axes2_x = prrr_s_2*prrr_ydd_1 - prrr_g_in_axes2_x
+        prrr_acc_2_in_axes2_y = prrr_c_2*prrr_ydd_1 - prrr_g_in_axes2_y
         # (prrr-acc_3) acceleration of the reference point of link 3, less gravity
-        prrr_acc_3_in_axes3_x = (
-        prrr_S_ddot_in_axes3_x + axis_y_prrr_axes3_x*gravity_y - axis_x_prrr_axes3_x*gravity_x
-        )
-        prrr_acc_3_in_axes3_y = (
-        prrr_S_ddot_in_axes3_y - axis_x_prrr_axes3_x*gravity_y - axis_y_prrr_axes3_x*gravity_x
-        )
+        prrr_g_in_axes3_x = axis_x_prrr_axes3_x*gravity_x - axis_y_prrr_axes3_x*gravity_y
+        prrr_g_in_axes3_y = axis_x_prrr_axes3_x*gravity_y + axis_y_prrr_axes3_x*gravity_x
+        prrr_acc_3_in_axes3_x = prrr_S_ddot_in_axes3_x - prrr_g_in_axes3_x
+        prrr_acc_3_in_axes3_y = prrr_S_ddot_in_axes3_y - prrr_g_in_axes3_y
         # (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points
         prrr_mu_3_in_axes3_z = (
         prrr_J_3_in_spec3_zz*prrr_alpha_3_in_axes3_z + prrr_acc_3_in_axes3_y*prrr_h_3_in_spec3_x -
@@ -4558,21 +4613,24 @@ def _run_legs(m, X, V, A):
         )
         # (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         prrr_mu_2_in_axes2_z = (
-        prrr_acc_2_in_axes2_y*prrr_h_2_in_spec2_x - prrr_B_2_in_axes2_xy*prrr_J_2_in_spec2_zz -
+        prrr_acc_2_in_axes2_y*prrr_h_2_in_spec2_x - prrr_J_2_in_spec2_zz*prrr_qdd_2_t -
             prrr_acc_2_in_axes2_x*prrr_h_2_in_spec2_y
         )
         # (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         prrr_N_2_in_axes2_z = prrr_mu_2_in_axes2_z + prrr_mu_3_in_axes3_z
         # (prrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*prrr_w_3_in_axes3_y
+        prrr_G_in_axes3_x = (
+        inv_prrr_r_2_in_axes3_y*(prrr_G_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_in_axes2_z)
+        )
         # (prrr-c) leg force on the platform without actuation and without the mass at the connection point
+        prrr_c_t = prrr_W_3_t*prrr_h_3_in_spec3_x
+        prrr_c_t_2 = prrr_W_3_t*prrr_h_3_in_spec3_y
         prrr_c_in_axes3_x = (
-        prrr_W_3_t*prrr_h_3_in_spec3_x + prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y -
-            inv_prrr_r_2_in_axes3_y*(prrr_G_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_in_axes2_z)
+        prrr_c_t + prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_in_axes3_x
         )
         prrr_c_in_axes3_y = (
-        prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_in_axes3_y -
-            prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_x
+        prrr_c_t_2 - prrr_G_in_axes3_y - prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_x
         )
         # (prrr-c_true) leg force on the platform without actuation, the last link's mass included
         prrr_c_true_in_axes3_x = prrr_c_in_axes3_x - prrr_acc_3_in_axes3_x*prrr_link3_mass
@@ -4656,67 +4714,70 @@ def _run_legs(m, X, V, A):
         rrr_qd_1_t = (
         inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
-            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
         rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass
@@ -4757,11 +4818,11 @@ def _run_potential(m, X):
     R_yx = sin(X_2)
     ok = True
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (potential) potential energy
-    potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x - R_yx*h_star_in_platform_y) +
-        gravity_y*(R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x + m_star*t_y)
-    )
+    potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
     potential_prrr, = [0.0] * 1
     for leg, k in legs[0]:
         (
@@ -4775,12 +4836,10 @@ def _run_potential(m, X):
         ) = k
         prrr_y_1_extra = X[[3][leg]]
         # (prrr-S) from the base point to the connection point
-        prrr_S_x = (
-        t_x + R_xx*prrr_platform_point_x - prrr_base_point_x - R_yx*prrr_platform_point_y
-        )
-        prrr_S_y = (
-        t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x - prrr_base_point_y
-        )
+        prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_y + t_y - prrr_base_point_y
         prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
         # (prrr-x_2) from the origin of joint 2 to the connection point
         prrr_x_2_in_axes0_x = (
@@ -4816,18 +4875,19 @@ def _run_potential(m, X):
         prrr_s_3_t = (
         inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
+        # (prrr-P_c_2) force that accelerates joint 2, per unit
+        prrr_P_c_2_in_axes0_x = prrr_c_2*prrr_h_2_in_spec2_x - prrr_h_2_in_spec2_y*prrr_s_2
         # (potential) potential energy
         prrr_potential_t_3 = prrr_b_in_axes0_x + prrr_y_1_extra
         prrr_potential_t_4 = prrr_c_3*prrr_h_3_in_spec3_x + prrr_h_3_in_spec3_y*prrr_s_3_t
         prrr_potential_t_5 = prrr_c_3*prrr_h_3_in_spec3_y - prrr_h_3_in_spec3_x*prrr_s_3_t
         prrr_potential_t_6 = (
-        prrr_acc_1_in_axes0_y*(prrr_h_1_in_spec0_x + prrr_c_2*prrr_h_2_in_spec2_x +
+        prrr_acc_1_in_axes0_y*(prrr_P_c_2_in_axes0_x + prrr_h_1_in_spec0_x +
             prrr_c_2*prrr_potential_t_4 - prrr_potential_t - prrr_potential_t_2 -
-            prrr_h_2_in_spec2_y*prrr_s_2 - prrr_potential_t_5*prrr_s_2) +
-            prrr_g_in_axes0_x*(prrr_h_1_in_spec0_y + prrr_c_2*prrr_h_2_in_spec2_y +
-            prrr_c_2*prrr_potential_t_5 + prrr_h_2_in_spec2_x*prrr_s_2 +
-            prrr_link1_mass*prrr_potential_t_3 + prrr_link2_mass*prrr_potential_t_3 +
-            prrr_potential_t_4*prrr_s_2)
+            prrr_potential_t_5*prrr_s_2) + prrr_g_in_axes0_x*(prrr_h_1_in_spec0_y +
+            prrr_c_2*prrr_h_2_in_spec2_y + prrr_c_2*prrr_potential_t_5 +
+            prrr_h_2_in_spec2_x*prrr_s_2 + prrr_link1_mass*prrr_potential_t_3 +
+            prrr_link2_mass*prrr_potential_t_3 + prrr_potential_t_4*prrr_s_2)
         )
         ok = (
         ok & (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) & (prrr_disc_2 >= 0.0)
@@ -4845,8 +4905,10 @@ def _run_potential(m, X):
             rrr_platform_point_y, rrr_potential_t, rrr_potential_t_2, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
@@ -4873,14 +4935,16 @@ def _run_potential(m, X):
         rrr_s_2 = (
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
         # (potential) potential energy
         rrr_potential_t_3 = (
-        (rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x +
-            rrr_c_2*rrr_h_2_in_spec2_x + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
-            rrr_potential_t_2*rrr_s_1) - rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
-            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
-            rrr_potential_t*rrr_s_1))
+        rrr_g_in_axes1_x*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
+            rrr_h_2_in_spec2_y*rrr_s_2) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
+            rrr_c_2*rrr_h_2_in_spec2_y + rrr_h_2_in_spec2_x*rrr_s_2 +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 - rrr_potential_t*rrr_s_1))
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
@@ -4968,23 +5032,22 @@ def _run_condition(m, X):
         inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
         # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
         prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_in_axes3_y = (
-        prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3_t
-        )
+        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
         # (prrr-w_2) reciprocal vector 1
         prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
         prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        axis_y_prrr_axes3_x = (
+        prrr_base_frame_xx*prrr_w_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
+        )
+        axis_x_prrr_axes3_x = (
+        prrr_base_frame_yx*prrr_w_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
+        )
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*prrr_w_2_t
-        prrr_w_2_x = (
-        -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yx*prrr_w_2_t +
-            prrr_base_frame_yy*prrr_e_1_in_axes3_y)
-        )
-        prrr_w_2_y = (
-        inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xx*prrr_w_2_t +
-            prrr_base_frame_xy*prrr_e_1_in_axes3_y)
-        )
+        prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
+        prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         # (prrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prrr_pivot_size = abs(prrr_rho2_2)
         prrr_pivot_size_2 = abs(prrr_r_2_in_axes3_y)
@@ -5057,20 +5120,17 @@ def _run_condition(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = (
-        -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_pivot_size = abs(rrr_rho2_1)
         rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
@@ -5279,12 +5339,12 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[[0, 1, 3, 5]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
-    gap = _wrapped(subtract_1, [1, 2, 3])
-    return (gap,)
+    residual = _wrapped(subtract_1, [1, 2, 3])
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -5293,7 +5353,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

@@ -151,9 +151,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -215,6 +215,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -263,7 +287,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -273,7 +297,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -286,7 +310,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -303,16 +327,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -320,7 +344,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -720,6 +753,10 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx;
         const real ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy;
         const real ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz;
+        /* (ups-h_group_2) first moments of the links that turn with link 2 */
+        const real ups_h_group_2_in_axes2_x = ups_h_2_in_spec2_x + ups_h_3_in_spec2_x;
+        const real ups_h_group_2_in_axes2_y = -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z;
+        const real ups_h_group_2_in_axes2_z = ups_h_2_in_spec2_y + ups_h_3_in_spec2_y;
         /* (h_star) */
         const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
@@ -774,6 +811,9 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         KEEP_OF_LEG(ups_h_3_in_spec2_x);
         KEEP_OF_LEG(ups_h_3_in_spec2_y);
         KEEP_OF_LEG(ups_h_3_in_spec2_z);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_x);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_y);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_z);
         KEEP_OF_LEG(ups_link2_mass);
         KEEP_OF_LEG(ups_link3_mass);
         KEEP_OF_LEG(ups_platform_point_x);
@@ -1649,8 +1689,8 @@ INLINE void doubt(int known, int found, real *unreachable, real *overflow)
     *unreachable += UNLESS(found || !known);
 }
 
-/* The bound that is missed by most, n if none; sign is 1 for a lower, -1 for an upper one. */
-static size_t missed_bound(size_t n, const real *start, const real *t, const real *least,
+/* The bound that is violated by most, n if none; sign is 1 for a lower, -1 for an upper one. */
+static size_t violated_bound(size_t n, const real *start, const real *t, const real *least,
         const real *most, const real *side, real *sign)
 {
     const real size = largest(start, n), endless = largest(start + n, n);
@@ -1658,13 +1698,13 @@ static size_t missed_bound(size_t n, const real *start, const real *t, const rea
     size_t worst = n;
     for (size_t k = 0; k < 2*n; ++k) {
         const size_t i = k < n ? k : k - n;
-        const real s = k < n ? 1 : -1, bound = k < n ? least[i] : most[i], gap = s*(bound - t[i]);
+        const real s = k < n ? 1 : -1, bound = k < n ? least[i] : most[i], excess = s*(bound - t[i]);
         const real rate = magnitude(t[n + i]) > PIVOT*endless ? -s*t[n + i] : 0;
-        const int is_missed = rate > 0 || (rate >= 0 && gap > PIVOT*(size + magnitude(bound)));
-        if (is_missed && is_finite(bound) && !(magnitude(side[i]) > 0)
-            && (rate > second || (rate >= second && gap > first))) {
+        const int is_violated = rate > 0 || (rate >= 0 && excess > PIVOT*(size + magnitude(bound)));
+        if (is_violated && is_finite(bound) && !(magnitude(side[i]) > 0)
+            && (rate > second || (rate >= second && excess > first))) {
             worst = i;
-            first = gap;
+            first = excess;
             second = rate;
             *sign = s;
         }
@@ -1686,11 +1726,11 @@ static void at_bounds(size_t n, const real *gram, const real *side, const real *
     solve_one(n, stride, rows, x, &unsure);
 }
 
-/* Points from amounts of the normals. */
-static void moved_by(size_t n, const real *start, const real *gram, const real *amounts, real *t)
+/* Points from coefficients of the normals. */
+static void moved_by(size_t n, const real *start, const real *gram, const real *coefficients, real *t)
 {
     for (size_t e = 0; e < 2*n; ++e) {
-        const real *const row = gram + e%n*n, *const own = amounts + (e < n ? 0 : n);
+        const real *const row = gram + e%n*n, *const own = coefficients + (e < n ? 0 : n);
         t[e] = start[e];
         for (size_t j = 0; j < n; ++j) {
             t[e] += row[j]*own[j];
@@ -1702,14 +1742,14 @@ static void moved_by(size_t n, const real *start, const real *gram, const real *
 static void settle(size_t n, const real *start, const real *gram, const real *least,
         const real *most, const real *side, real *t)
 {
-    real amounts[2*BIG] = {0}, right[2*BIG] = {0};
+    real coefficients[2*BIG] = {0}, right[2*BIG] = {0};
     for (size_t i = 0; i < n; ++i) {
         right[i] = (side[i] > 0 ? least[i] : most[i]) - start[i];
         right[n + i] = -start[n + i];
     }
-    at_bounds(n, gram, side, right, amounts);
-    at_bounds(n, gram, side, right + n, amounts + n);
-    moved_by(n, start, gram, amounts, t);
+    at_bounds(n, gram, side, right, coefficients);
+    at_bounds(n, gram, side, right + n, coefficients + n);
+    moved_by(n, start, gram, coefficients, t);
     for (size_t i = 0; i < n; ++i) {
         t[i] = side[i] > 0 || t[i] < least[i] ? least[i] : side[i] < 0 || t[i] > most[i] ? most[i] : t[i];
     }
@@ -1721,11 +1761,11 @@ static void settle(size_t n, const real *start, const real *gram, const real *le
 static int nearest_point(size_t n, const real *start, const real *gram, const real *least,
         const real *most, real *t)
 {
-    real amounts[2*BIG] = {0}, side[BIG] = {0}, right[BIG] = {0}, without[BIG] = {0}, sign = 0;
+    real coefficients[2*BIG] = {0}, side[BIG] = {0}, right[BIG] = {0}, without[BIG] = {0}, sign = 0;
     size_t p = n;
     for (size_t turn = 0; turn < TURNS*n; ++turn) {
-        moved_by(n, start, gram, amounts, t);
-        p = p < n ? p : missed_bound(n, start, t, least, most, side, &sign);
+        moved_by(n, start, gram, coefficients, t);
+        p = p < n ? p : violated_bound(n, start, t, least, most, side, &sign);
         if (p >= n) {
             settle(n, start, gram, least, most, side, t);
             return 1;
@@ -1749,7 +1789,7 @@ static int nearest_point(size_t n, const real *start, const real *gram, const re
         }
         for (size_t i = 0; i < n; ++i) {
             const real share = side[i]*without[i] > clear ? without[i] : R(INFINITY);
-            const real shift = amounts[i]/share, rate = amounts[n + i]/share;
+            const real shift = coefficients[i]/share, rate = coefficients[n + i]/share;
             if (is_finite(share)
                 && (leaving == 2*n || rate < second || (rate <= second && shift < first))) {
                 leaving = i;
@@ -1761,16 +1801,16 @@ static int nearest_point(size_t n, const real *start, const real *gram, const re
             return 0;
         }
         for (size_t i = 0; i < n; ++i) {
-            amounts[i] -= without[i]*first;
-            amounts[n + i] -= without[i]*second;
+            coefficients[i] -= without[i]*first;
+            coefficients[n + i] -= without[i]*second;
         }
-        amounts[p] += sign*first;
-        amounts[n + p] += sign*second;
+        coefficients[p] += sign*first;
+        coefficients[n + p] += sign*second;
         if (leaving == n) {
             side[p] = sign;
             p = n;
         } else {
-            side[leaving] = amounts[leaving] = amounts[n + leaving] = 0;
+            side[leaving] = coefficients[leaving] = coefficients[n + leaving] = 0;
         }
     }
     return 0;
@@ -1924,10 +1964,28 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
-        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
-        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+    real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
+        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
+
+INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
+{
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real W_p_t = omega_x*omega_x;
+    const real omega_y = V[4*w + k];
+    const real W_p_t_2 = omega_y*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_t_3 = omega_z*omega_z;
+    v->W_p_t_4 = W_p_t_2 + W_p_t_3;
+    v->W_p_xy = omega_x*omega_y;
+    v->W_p_xz = omega_x*omega_z;
+    v->W_p_t_5 = W_p_t + W_p_t_3;
+    v->W_p_yz = omega_y*omega_z;
+    v->W_p_t_6 = W_p_t + W_p_t_2;
+}
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
@@ -1937,10 +1995,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_5 = X[5*w + k];
     const real X_6 = X[6*w + k];
     const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-    const real quaternion_scale = 2/quaternion_norm2;
-    const real quaternion_sx = X_3*quaternion_scale;
-    const real quaternion_sy = X_4*quaternion_scale;
-    const real quaternion_sz = X_5*quaternion_scale;
+    v->quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*v->quaternion_scale;
+    const real quaternion_sy = X_4*v->quaternion_scale;
+    const real quaternion_sz = X_5*v->quaternion_scale;
     const real quaternion_wx = X_6*quaternion_sx;
     const real quaternion_wy = X_6*quaternion_sy;
     const real quaternion_wz = X_6*quaternion_sz;
@@ -1950,53 +2008,22 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real quaternion_yy = X_4*quaternion_sy;
     const real quaternion_yz = X_4*quaternion_sz;
     const real quaternion_zz = X_5*quaternion_sz;
-    const real R_xx = 1 - quaternion_yy - quaternion_zz;
-    const real R_xy = quaternion_xy - quaternion_wz;
-    const real R_xz = quaternion_wy + quaternion_xz;
-    const real R_yx = quaternion_wz + quaternion_xy;
-    const real R_yy = 1 - quaternion_xx - quaternion_zz;
-    const real R_yz = quaternion_yz - quaternion_wx;
-    const real R_zx = quaternion_xz - quaternion_wy;
-    const real R_zy = quaternion_wx + quaternion_yz;
-    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    v->R_xx = 1 - quaternion_yy - quaternion_zz;
+    v->R_xy = quaternion_xy - quaternion_wz;
+    v->R_xz = quaternion_wy + quaternion_xz;
+    v->R_yx = quaternion_wz + quaternion_xy;
+    v->R_yy = 1 - quaternion_xx - quaternion_zz;
+    v->R_yz = quaternion_yz - quaternion_wx;
+    v->R_zx = quaternion_xz - quaternion_wy;
+    v->R_zy = quaternion_wx + quaternion_yz;
+    v->R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
-        R_xx*m->h_star_in_platform_x;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
-        R_yy*m->h_star_in_platform_y;
-    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
-        R_zz*m->h_star_in_platform_z;
-    v->quaternion_scale = quaternion_scale;
-    v->R_xx = R_xx;
-    v->R_xy = R_xy;
-    v->R_xz = R_xz;
-    v->R_yx = R_yx;
-    v->R_yy = R_yy;
-    v->R_yz = R_yz;
-    v->R_zx = R_zx;
-    v->R_zy = R_zy;
-    v->R_zz = R_zz;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
-    v->h_star_z = h_star_z;
-}
-
-INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
-{
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
-    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
-    v->omega_in_platform_x = omega_in_platform_x;
-    v->omega_in_platform_y = omega_in_platform_y;
-    v->omega_in_platform_z = omega_in_platform_z;
-}
-
-INLINE void stage_M_dynamics(const prepared *m, values *v)
-{
+    v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
+        v->R_xx*m->h_star_in_platform_x;
+    v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
+        v->R_yy*m->h_star_in_platform_y;
+    v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
+        v->R_zz*m->h_star_in_platform_z;
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
@@ -2008,23 +2035,31 @@ INLINE void stage_M_dynamics(const prepared *m, values *v)
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
-    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+    v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
-    v->J_star_xx = J_star_xx;
-    v->J_star_xy = J_star_xy;
-    v->J_star_xz = J_star_xz;
-    v->J_star_yy = J_star_yy;
-    v->J_star_yz = J_star_yz;
-    v->J_star_zz = J_star_zz;
+    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
+}
+
+INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
+{
+    /* (B_p) acceleration tensor of the platform */
+    const real alpha_z = A[5*w + k];
+    v->B_p_xy = v->W_p_xy - alpha_z;
+    const real alpha_y = A[4*w + k];
+    v->B_p_xz = alpha_y + v->W_p_xz;
+    v->B_p_yx = alpha_z + v->W_p_xy;
+    const real alpha_x = A[3*w + k];
+    v->B_p_yz = v->W_p_yz - alpha_x;
+    v->B_p_zx = v->W_p_xz - alpha_y;
+    v->B_p_zy = alpha_x + v->W_p_yz;
 }
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
@@ -2036,82 +2071,51 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
+    v->Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    v->Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    v->Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
-        v->R_xx*m->gravity_x;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
-        v->R_yy*m->gravity_y;
-    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
-        v->R_zz*m->gravity_z;
-    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
-        Z_q_t_2*v->omega_in_platform_z;
-    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
-        Z_q_t_3*v->omega_in_platform_x;
-    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
-        Z_q_t*v->omega_in_platform_y;
-    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
-        v->R_xz*Z_q_in_platform_z;
-    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
-        v->R_yz*Z_q_in_platform_z;
-    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
-        v->R_zz*Z_q_in_platform_z;
-    v->Z_p_x = Z_p_x;
-    v->Z_p_y = Z_p_y;
-    v->Z_p_z = Z_p_z;
-    v->Z_q_x = Z_q_x;
-    v->Z_q_y = Z_q_y;
-    v->Z_q_z = Z_q_z;
+    const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
+    const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
+    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
+        Z_q_t_2*omega_z;
+    v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
+        Z_q_t_3*omega_x;
+    v->Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x + Z_q_t_2*omega_x -
+        Z_q_t*omega_y;
 }
 
 typedef struct {
-    real tube_q_x, tube_q_y, tube_q_z, tube_root_1_t, tube_root_1, tube_c_1, tube_s_1, tube_q_3_t,
-        tube_q_3, tube_c_2, tube_e_1_in_axes2_x, axis_z_tube_axes2_x, axis_z_tube_axes2_y,
-        axis_z_tube_axes2_z, axis_y_tube_axes2_x, axis_y_tube_axes2_y, axis_y_tube_axes2_z,
-        axis_x_tube_axes2_x, axis_x_tube_axes2_y, axis_x_tube_axes2_z, tube_n_m1_t, tube_n_m1_t_2,
-        tube_n_m1_t_3, tube_n_m1_t_4, tube_n_m1_t_5, tube_n_m1_t_6, tube_n_m1_t_7, tube_n_m1_t_8,
-        tube_n_m1_t_9, tube_n_m1_t_10, tube_n_m1_t_11, tube_n_m1_t_12, tube_end_p1_in_axes2_z,
-        tube_n_m1_in_axes2_z, tube_n_m1_in_axes1_z, tube_n_m2_t, tube_n_m2_t_2, tube_n_m2_t_3,
-        tube_n_m2_in_axes2_y, tube_end_p2_in_axes2_y, tube_n_m3_t, tube_n_m3_t_2, tube_n_m3_t_3,
-        tube_end_p3_in_axes2_z, tube_n_m3_in_axes2_z, tube_n_m3_t_5, tube_f_c1_t, inv_tube_f_c1_t,
-        tube_m1_c1_t, tube_m3_c1_t, tube_m1_c2_t, tube_m3_c2, tube_m1_c3, tube_m3_c3_t,
-        tube_mu_c1_in_axes2_y, tube_mu_c1_in_axes2_x, tube_mu_c1_in_axes2_z, tube_mu_c2_in_axes2_y,
-        tube_mu_c2_t, tube_mu_c2_in_axes2_z, tube_size_c3, inv_tube_size_c3, tube_mu1_c3,
-        tube_mu3_c3_t, tube_mu_c3_x, tube_mu_c3_y, tube_mu_c3_z, tube_w_1_t, tube_w_1_t_2,
-        tube_w_1_t_13, inv_tube_w_1_t_13, tube_w_1_t_14, tube_w_1_t_15, tube_w_1_t_16, tube_w_1_t_17,
-        tube_w_1_t_21, tube_w_1_t_25, tube_w_1_t_29, tube_w_1_t_30, tube_w_1_t_31, tube_w_1_t_32,
-        tube_w_1_t_33, inv_tube_w_1_t_33, tube_w_1_t_34, tube_w_1_t_35, tube_w_1_t_36, tube_w_1_t_37,
-        tube_w_1_t_41, tube_w_1_t_45, tube_w_1_t_49, inv_tube_w_1_t_49, tube_w_1_t_50, tube_w_1_t_51,
-        tube_w_1_t_52, tube_w_1_t_53, tube_w_1_t_58, tube_w_1_t_63, inv_tube_w_1_t_63, tube_w_1_t_64,
-        tube_w_1_t_65, tube_w_1_t_66, tube_w_1_t_67, tube_w_1_t_68, tube_w_1_t_69, tube_w_1_t_70,
-        tube_w_1_t_71, tube_w_1_t_72, tube_w_1_t_73, tube_w_1_t_74, tube_w_1_t_75, inv_tube_w_1_t_75,
-        tube_end_p1_in_axes2_x, tube_end_p2_in_axes2_z, tube_end_p3_in_axes2_y, tube_g_in_axes2_z,
-        tube_n_c1_x, tube_n_c1_y, tube_n_c1_z, tube_n_c2_x, tube_n_c2_y, tube_n_c2_z, tube_a_p_x,
-        tube_a_p_y, tube_a_p_z, tube_etad_1_t, tube_etad_2_t, tube_etad_3_t, tube_S_dot_t_3,
-        tube_S_dot_t_4, tube_S_dot_t_5, tube_S_dot_in_axes2_x, tube_S_dot_in_axes2_y,
-        tube_S_dot_in_axes2_z, tube_omega_in_axes2_y, tube_omega_in_axes2_z, tube_eta_1,
-        tube_omega_in_axes2_x, tube_eta_2, tube_eta_3, tube_u_1_x, tube_u_1_y, tube_u_1_z,
-        tube_bias_t_3, tube_qd_1_t_6, tube_qd_1_t_7, tube_qd_1_t_8, tube_S_ddot_x, tube_S_ddot_y,
-        tube_S_ddot_z, tube_g_in_axes2_x, tube_g_in_axes2_y, tube_acc_3_o_in_axes2_x, tube_qd_1_t,
-        tube_qd_1_t_2, tube_qd_1_t_3, tube_qd_1_t_4, tube_qd_1_t_5, tube_qd_2,
-        tube_omega_1_in_axes2_x, tube_omega_1_in_axes2_y, tube_W_2_in_axes2_yz, tube_W_2_in_axes2_xz,
-        tube_nu_1, tube_nu_2, tube_nu_3, tube_Hk_a_1_x, tube_Hk_a_1_y, tube_Hk_a_1_z, tube_Hk_a_2_x,
-        tube_Hk_a_2_y, tube_Hk_a_2_z, tube_G_m_in_axes2_x, tube_G_m_in_axes2_y, tube_G_m_in_axes2_z,
-        tube_c_x, tube_c_y, tube_c_z;
+    real tube_q_x, tube_q_y, tube_q_z, tube_root_1_t, tube_c_1, tube_s_1, tube_q_3_t, tube_q_3,
+        tube_c_2, tube_e_1_in_axes2_x, axis_z_tube_axes2_x, axis_z_tube_axes2_y, axis_z_tube_axes2_z,
+        axis_y_tube_axes2_x, axis_y_tube_axes2_y, axis_y_tube_axes2_z, axis_x_tube_axes2_x,
+        axis_x_tube_axes2_y, axis_x_tube_axes2_z, tube_end_p1_in_axes2_z, tube_n_m1_in_axes2_z,
+        tube_n_m2_in_axes2_y, tube_end_p2_in_axes2_y, tube_end_p3_in_axes2_z, tube_n_m3_in_axes2_z,
+        tube_f_c1_t, tube_m1_c1_t, tube_m3_c1_t, tube_m1_c2_t, tube_m3_c2, tube_mu_c1_x, tube_mu_c1_y,
+        tube_mu_c1_z, tube_mu_c2_x, tube_mu_c2_y, tube_mu_c2_z, tube_size_c3, inv_tube_size_c3,
+        tube_mu1_c3, tube_mu3_c3_t, tube_mu_c3_x, tube_mu_c3_y, tube_mu_c3_z, tube_w_1_t_13,
+        inv_tube_w_1_t_13, tube_w_1_t_14, tube_w_1_t_15, tube_w_1_t_16, tube_w_1_t_17, tube_w_1_t_21,
+        tube_w_1_t_25, tube_w_1_t_29, tube_w_1_t_33, inv_tube_w_1_t_33, tube_w_1_t_34, tube_w_1_t_35,
+        tube_w_1_t_36, tube_w_1_t_37, tube_w_1_t_41, tube_w_1_t_45, tube_w_1_t_49, inv_tube_w_1_t_49,
+        tube_w_1_t_50, tube_w_1_t_51, tube_w_1_t_52, tube_w_1_t_53, tube_w_1_t_58, tube_w_1_t_63,
+        inv_tube_w_1_t_63, tube_w_1_t_64, tube_w_1_t_65, tube_w_1_t_66, tube_w_1_t_67, tube_w_1_t_68,
+        tube_w_1_t_69, tube_w_1_t_75, inv_tube_w_1_t_75, tube_w_1_t_76, tube_w_1_t_77, tube_m1_w_1_t,
+        tube_m2_w_1_t, tube_m3_w_1_t, tube_end_p1_in_axes2_x, tube_end_p2_in_axes2_z,
+        tube_end_p3_in_axes2_y, tube_g_in_axes2_z, tube_g_in_axes2_x, tube_g_in_axes2_y,
+        tube_mu_2_t_4, tube_mu_2_t_5, tube_mu_2_t_6, tube_Hk_a_1_x, tube_Hk_a_1_y, tube_Hk_a_1_z,
+        tube_Hk_a_2_x, tube_Hk_a_2_y, tube_Hk_a_2_z, tube_etad_1_t, tube_etad_2_t, tube_etad_3_t,
+        tube_S_dot_in_axes2_x, tube_qd_1, tube_qd_2, tube_W_2_in_axes2_yz, tube_W_2_in_axes2_xz,
+        tube_W_2_t_3, tube_W_2_in_axes2_xy, tube_u_1_x, tube_u_1_y, tube_u_1_z, tube_bias_t,
+        tube_bias_t_2, tube_bias_t_4, tube_bias_t_5, tube_bias_in_axes2_y, tube_bias_in_axes2_z,
+        tube_rel_o_in_axes2_y, tube_rel_o_in_axes2_z, tube_nu_1, tube_nu_2, tube_nu_3, tube_f_3_t_2,
+        tube_f_3_t_3, tube_f_3_t_4, tube_mu_2_t, tube_mu_2_t_2, tube_mu_2_t_3, tube_S_ddot_in_axes2_x,
+        tube_qdd_1, tube_qdd_2, tube_Q_xx, tube_Q_xy, tube_Q_xz, tube_Q_yy, tube_Q_yz, tube_Q_zz,
+        tube_M_ta_t_13, tube_M_ta_t_14, tube_M_ta_t_15, tube_M_ta_t_16, tube_M_ta_t_17,
+        tube_M_ta_t_18, tube_M_ta_t_19, tube_M_ta_t_20, tube_M_ta_t_21, tube_M_aa_t_10,
+        tube_M_aa_t_11, tube_M_aa_t_12, tube_M_aa_t_13, tube_M_aa_t_14, tube_M_aa_t_15, tube_U_x,
+        tube_U_y, tube_U_z, tube_Z_a_t, tube_Z_a_t_2, tube_Z_a_t_3, tube_c_x, tube_c_y, tube_c_z,
+        tube_c_m_x, tube_c_m_y, tube_c_m_z;
 } values_tube;
 
 INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -2121,24 +2125,24 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real tube_q_x = R_xy*m->tube_platform_point_y[i] + R_xz*m->tube_platform_point_z[i]
-        + R_xx*m->tube_platform_point_x[i];
+    v->tube_q_x = R_xy*m->tube_platform_point_y[i] + R_xz*m->tube_platform_point_z[i] +
+        R_xx*m->tube_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real tube_q_y = R_yx*m->tube_platform_point_x[i] + R_yz*m->tube_platform_point_z[i]
-        + R_yy*m->tube_platform_point_y[i];
+    v->tube_q_y = R_yx*m->tube_platform_point_x[i] + R_yz*m->tube_platform_point_z[i] +
+        R_yy*m->tube_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real tube_q_z = R_zx*m->tube_platform_point_x[i] + R_zy*m->tube_platform_point_y[i]
-        + R_zz*m->tube_platform_point_z[i];
+    v->tube_q_z = R_zx*m->tube_platform_point_x[i] + R_zy*m->tube_platform_point_y[i] +
+        R_zz*m->tube_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real tube_S_x = t_x - m->tube_base_point_x[i] + tube_q_x;
+    const real tube_S_x = t_x - m->tube_base_point_x[i] + v->tube_q_x;
     const real t_y = X[1*w + j];
-    const real tube_S_y = t_y - m->tube_base_point_y[i] + tube_q_y;
+    const real tube_S_y = t_y - m->tube_base_point_y[i] + v->tube_q_y;
     const real t_z = X[2*w + j];
-    const real tube_S_z = t_z - m->tube_base_point_z[i] + tube_q_z;
+    const real tube_S_z = t_z - m->tube_base_point_z[i] + v->tube_q_z;
     const real tube_S_in_turn1_x = tube_S_x*m->tube_base_frame_xx[i] +
         tube_S_y*m->tube_base_frame_yx[i] + tube_S_z*m->tube_base_frame_zx[i];
     const real tube_S_in_turn1_y = tube_S_x*m->tube_base_frame_xy[i] +
@@ -2146,42 +2150,43 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real tube_S_in_turn1_z = tube_S_x*m->tube_base_frame_xz[i] +
         tube_S_y*m->tube_base_frame_yz[i] + tube_S_z*m->tube_base_frame_zz[i];
     /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
+    v->tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
         tube_S_in_turn1_y*tube_S_in_turn1_y;
-    const real tube_root_1 = m->tube_branch_1[i]*root(tube_root_1_t);
+    const real tube_root_1 = m->tube_branch_1[i]*root(v->tube_root_1_t);
     /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_tube_root_1 = 1/tube_root_1;
-    const real tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x;
+    v->tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x;
     /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-    const real tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y;
+    v->tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y;
     /* (tube-q_3) displacement of joint 3 */
-    const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
-    const real tube_q_3 = m->tube_branch_2[i]*root(tube_q_3_t);
+    v->tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + v->tube_root_1_t;
+    v->tube_q_3 = m->tube_branch_2[i]*root(v->tube_q_3_t);
     /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_tube_q_3 = 1/tube_q_3;
-    const real tube_c_2 = inv_tube_q_3*tube_root_1;
+    const real inv_tube_q_3 = 1/v->tube_q_3;
+    v->tube_c_2 = inv_tube_q_3*tube_root_1;
+    /* (tube-q_2) displacement of joint 2 */
+    v->tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z;
     /* (tube-S_dot) velocity of the connection point */
-    const real tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z;
-    const real axis_z_tube_axes2_x = m->tube_base_frame_xy[i]*tube_c_1 -
-        m->tube_base_frame_xx[i]*tube_s_1;
-    const real axis_z_tube_axes2_y = m->tube_base_frame_yy[i]*tube_c_1 -
-        m->tube_base_frame_yx[i]*tube_s_1;
-    const real axis_z_tube_axes2_z = m->tube_base_frame_zy[i]*tube_c_1 -
-        m->tube_base_frame_zx[i]*tube_s_1;
-    const real tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x;
-    const real tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1;
-    const real axis_y_tube_axes2_x = tube_S_dot_t*m->tube_base_frame_xx[i] -
-        m->tube_base_frame_xz[i]*tube_c_2 + tube_S_dot_t_2*m->tube_base_frame_xy[i];
-    const real axis_y_tube_axes2_y = tube_S_dot_t*m->tube_base_frame_yx[i] -
-        m->tube_base_frame_yz[i]*tube_c_2 + tube_S_dot_t_2*m->tube_base_frame_yy[i];
-    const real axis_y_tube_axes2_z = tube_S_dot_t*m->tube_base_frame_zx[i] -
-        m->tube_base_frame_zz[i]*tube_c_2 + tube_S_dot_t_2*m->tube_base_frame_zy[i];
-    const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
-        axis_y_tube_axes2_z*axis_z_tube_axes2_y;
-    const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
-        axis_y_tube_axes2_x*axis_z_tube_axes2_z;
-    const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
-        axis_y_tube_axes2_y*axis_z_tube_axes2_x;
+    v->axis_z_tube_axes2_x = m->tube_base_frame_xy[i]*v->tube_c_1 -
+        m->tube_base_frame_xx[i]*v->tube_s_1;
+    v->axis_z_tube_axes2_y = m->tube_base_frame_yy[i]*v->tube_c_1 -
+        m->tube_base_frame_yx[i]*v->tube_s_1;
+    v->axis_z_tube_axes2_z = m->tube_base_frame_zy[i]*v->tube_c_1 -
+        m->tube_base_frame_zx[i]*v->tube_s_1;
+    const real tube_S_dot_t = v->tube_c_1*v->tube_e_1_in_axes2_x;
+    const real tube_S_dot_t_2 = v->tube_e_1_in_axes2_x*v->tube_s_1;
+    v->axis_y_tube_axes2_x = tube_S_dot_t*m->tube_base_frame_xx[i] -
+        m->tube_base_frame_xz[i]*v->tube_c_2 + tube_S_dot_t_2*m->tube_base_frame_xy[i];
+    v->axis_y_tube_axes2_y = tube_S_dot_t*m->tube_base_frame_yx[i] -
+        m->tube_base_frame_yz[i]*v->tube_c_2 + tube_S_dot_t_2*m->tube_base_frame_yy[i];
+    v->axis_y_tube_axes2_z = tube_S_dot_t*m->tube_base_frame_zx[i] -
+        m->tube_base_frame_zz[i]*v->tube_c_2 + tube_S_dot_t_2*m->tube_base_frame_zy[i];
+    v->axis_x_tube_axes2_x = v->axis_y_tube_axes2_y*v->axis_z_tube_axes2_z -
+        v->axis_y_tube_axes2_z*v->axis_z_tube_axes2_y;
+    v->axis_x_tube_axes2_y = v->axis_y_tube_axes2_z*v->axis_z_tube_axes2_x -
+        v->axis_y_tube_axes2_x*v->axis_z_tube_axes2_z;
+    v->axis_x_tube_axes2_z = v->axis_y_tube_axes2_x*v->axis_z_tube_axes2_y -
+        v->axis_y_tube_axes2_y*v->axis_z_tube_axes2_x;
     /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
     const real tube_n_m1_t = R_yx*m->tube_base_frame_yx[i] + R_zx*m->tube_base_frame_zx[i] +
         R_xx*m->tube_base_frame_xx[i];
@@ -2210,11 +2215,11 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real tube_n_m1_t_12 = tube_n_m1_t_7*m->tube_platform_joint_rotation_yx[i] +
         tube_n_m1_t_8*m->tube_platform_joint_rotation_yy[i] +
         tube_n_m1_t_9*m->tube_platform_joint_rotation_yz[i];
-    const real tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
-    const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1;
-    const real tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 -
-        tube_c_2*tube_n_m1_t_12;
-    const real tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z;
+    const real tube_n_m1_t_13 = v->tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*v->tube_s_1;
+    v->tube_end_p1_in_axes2_z = v->tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*v->tube_s_1;
+    v->tube_n_m1_in_axes2_z = v->tube_e_1_in_axes2_x*tube_n_m1_t_13 -
+        v->tube_c_2*tube_n_m1_t_12;
+    const real tube_n_m1_in_axes1_z = v->tube_c_2*v->tube_end_p1_in_axes2_z;
     /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
     const real tube_n_m2_t = tube_n_m1_t*m->tube_platform_joint_rotation_zx[i] +
         tube_n_m1_t_2*m->tube_platform_joint_rotation_zy[i] +
@@ -2225,13 +2230,13 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real tube_n_m2_t_3 = tube_n_m1_t_7*m->tube_platform_joint_rotation_zx[i] +
         tube_n_m1_t_8*m->tube_platform_joint_rotation_zy[i] +
         tube_n_m1_t_9*m->tube_platform_joint_rotation_zz[i];
-    const real tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
-    const real tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 +
-        tube_e_1_in_axes2_x*tube_n_m2_t_3;
-    const real tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 -
-        tube_c_2*tube_n_m2_t_3;
-    const real tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y +
-        tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
+    const real tube_n_m2_t_4 = v->tube_c_1*tube_n_m2_t + tube_n_m2_t_2*v->tube_s_1;
+    v->tube_n_m2_in_axes2_y = v->tube_c_2*tube_n_m2_t_4 +
+        v->tube_e_1_in_axes2_x*tube_n_m2_t_3;
+    v->tube_end_p2_in_axes2_y = v->tube_e_1_in_axes2_x*tube_n_m2_t_4 -
+        v->tube_c_2*tube_n_m2_t_3;
+    const real tube_n_m2_t_5 = v->tube_c_2*v->tube_n_m2_in_axes2_y +
+        v->tube_e_1_in_axes2_x*v->tube_end_p2_in_axes2_y;
     /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
     const real tube_n_m3_t = tube_n_m1_t*m->tube_platform_joint_rotation_xx[i] +
         tube_n_m1_t_2*m->tube_platform_joint_rotation_xy[i] +
@@ -2242,339 +2247,242 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real tube_n_m3_t_3 = tube_n_m1_t_7*m->tube_platform_joint_rotation_xx[i] +
         tube_n_m1_t_8*m->tube_platform_joint_rotation_xy[i] +
         tube_n_m1_t_9*m->tube_platform_joint_rotation_xz[i];
-    const real tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
-    const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1;
-    const real tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 +
-        tube_e_1_in_axes2_x*tube_n_m3_t_3;
-    const real tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z;
+    const real tube_n_m3_t_4 = v->tube_c_1*tube_n_m3_t + tube_n_m3_t_2*v->tube_s_1;
+    v->tube_end_p3_in_axes2_z = v->tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*v->tube_s_1;
+    v->tube_n_m3_in_axes2_z = v->tube_c_2*tube_n_m3_t_4 +
+        v->tube_e_1_in_axes2_x*tube_n_m3_t_3;
+    const real tube_n_m3_t_5 = v->tube_e_1_in_axes2_x*v->tube_end_p3_in_axes2_z;
     /* (tube-f_c1) force part of constraint wrench 1 */
-    const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-        tube_n_m1_in_axes2_z*tube_n_m3_t_5;
+    v->tube_f_c1_t = tube_n_m1_in_axes1_z*v->tube_n_m3_in_axes2_z +
+        v->tube_n_m1_in_axes2_z*tube_n_m3_t_5;
     /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
-    const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-    const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3;
+    const real inv_tube_f_c1_t = 1/v->tube_f_c1_t;
+    v->tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*v->tube_q_3;
     /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
-    const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3;
+    v->tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*v->tube_q_3;
     /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
-    const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+    v->tube_m1_c2_t = inv_tube_f_c1_t*v->tube_n_m3_in_axes2_z*tube_root_1;
     /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
-    const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+    v->tube_m3_c2 = inv_tube_f_c1_t*v->tube_n_m1_in_axes2_z*tube_root_1;
     /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-    const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z;
+    const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*v->tube_n_m3_in_axes2_z;
     /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-    const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5;
+    const real tube_m3_c3_t = inv_tube_f_c1_t*v->tube_n_m1_in_axes2_z*tube_n_m2_t_5;
     /* (tube-mu_c1) the moment that goes with it */
-    const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
-    const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
-    const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
-        tube_m3_c1_t*tube_n_m3_in_axes2_z;
+    const real tube_mu_c1_in_axes2_y = v->tube_end_p1_in_axes2_z*v->tube_m1_c1_t;
+    const real tube_mu_c1_in_axes2_x = v->tube_end_p3_in_axes2_z*v->tube_m3_c1_t;
+    const real tube_mu_c1_in_axes2_z = -v->tube_m1_c1_t*v->tube_n_m1_in_axes2_z -
+        v->tube_m3_c1_t*v->tube_n_m3_in_axes2_z;
+    v->tube_mu_c1_x = v->axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
+        v->axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y +
+        v->axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z;
+    v->tube_mu_c1_y = v->axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
+        v->axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y +
+        v->axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z;
+    v->tube_mu_c1_z = v->axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
+        v->axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y +
+        v->axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z;
     /* (tube-mu_c2) the moment that goes with it */
-    const real tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t;
-    const real tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2;
-    const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
-        tube_m1_c2_t*tube_n_m1_in_axes2_z;
+    const real tube_mu_c2_in_axes2_y = v->tube_end_p1_in_axes2_z*v->tube_m1_c2_t;
+    const real tube_mu_c2_t = v->tube_end_p3_in_axes2_z*v->tube_m3_c2;
+    const real tube_mu_c2_in_axes2_z = v->tube_m3_c2*v->tube_n_m3_in_axes2_z -
+        v->tube_m1_c2_t*v->tube_n_m1_in_axes2_z;
+    v->tube_mu_c2_x = v->axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y +
+        v->axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z - v->axis_x_tube_axes2_x*tube_mu_c2_t;
+    v->tube_mu_c2_y = v->axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y +
+        v->axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z - v->axis_x_tube_axes2_y*tube_mu_c2_t;
+    v->tube_mu_c2_z = v->axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y +
+        v->axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z - v->axis_x_tube_axes2_z*tube_mu_c2_t;
     /* (tube-size_c3) size of the moment */
-    const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
+    v->tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
     /* (tube-mu1_c3) moment along direction 1 that goes with it */
-    const real inv_tube_size_c3 = 1/tube_size_c3;
-    const real tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3;
+    v->inv_tube_size_c3 = 1/v->tube_size_c3;
+    v->tube_mu1_c3 = v->inv_tube_size_c3*tube_m1_c3;
     /* (tube-mu3_c3) moment along direction 3 that goes with it */
-    const real tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t;
+    v->tube_mu3_c3_t = v->inv_tube_size_c3*tube_m3_c3_t;
     /* (tube-mu_c3) the moment that goes with it */
-    const real tube_mu_c3_in_axes2_x = tube_end_p3_in_axes2_z*tube_mu3_c3_t -
-        inv_tube_size_c3*tube_end_p2_in_axes2_y;
-    const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y -
-        tube_end_p1_in_axes2_z*tube_mu1_c3;
-    const real tube_mu_c3_in_axes2_z = tube_mu1_c3*tube_n_m1_in_axes2_z -
-        tube_mu3_c3_t*tube_n_m3_in_axes2_z;
-    const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
-        axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z;
-    const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
-        axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z;
-    const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
-        axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z;
+    const real tube_mu_c3_in_axes2_x = v->tube_end_p3_in_axes2_z*v->tube_mu3_c3_t -
+        v->inv_tube_size_c3*v->tube_end_p2_in_axes2_y;
+    const real tube_mu_c3_in_axes2_y = v->inv_tube_size_c3*v->tube_n_m2_in_axes2_y -
+        v->tube_end_p1_in_axes2_z*v->tube_mu1_c3;
+    const real tube_mu_c3_in_axes2_z = v->tube_mu1_c3*v->tube_n_m1_in_axes2_z -
+        v->tube_mu3_c3_t*v->tube_n_m3_in_axes2_z;
+    v->tube_mu_c3_x = v->axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
+        v->axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y +
+        v->axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z;
+    v->tube_mu_c3_y = v->axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
+        v->axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y +
+        v->axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z;
+    v->tube_mu_c3_z = v->axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
+        v->axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y +
+        v->axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z;
     /* (tube-w_1) force part of reciprocal wrench 1 */
     const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
     const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_5;
     const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
-    const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
-    const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-    const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
-    const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
-    const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
-    const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
-    const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3;
-    const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
-    const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3_t;
-    const real tube_w_1_t_13 = root(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
+    const real tube_w_1_t_4 = R(1.35)*v->tube_n_m1_in_axes2_z;
+    const real tube_w_1_t_5 = R(1.35)*v->tube_n_m3_in_axes2_z;
+    const real tube_w_1_t_6 = R(1.35)*v->tube_m1_c1_t;
+    const real tube_w_1_t_7 = R(1.35)*v->tube_m3_c1_t;
+    const real tube_w_1_t_8 = R(1.35)*v->tube_m1_c2_t;
+    const real tube_w_1_t_9 = R(1.35)*v->tube_m3_c2;
+    const real tube_w_1_t_10 = R(1.35)*v->tube_mu1_c3;
+    const real tube_w_1_t_11 = R(1.35)*v->inv_tube_size_c3;
+    const real tube_w_1_t_12 = R(1.35)*v->tube_mu3_c3_t;
+    v->tube_w_1_t_13 = root(v->tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
         tube_w_1_t_5*tube_w_1_t_5);
-    const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-    const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3;
-    const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
-    const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
-    const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
-        tube_w_1_t_14;
-    const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
-    const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-    const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-    const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
-    const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
-    const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-    const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
-    const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
-    const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
-    const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
-    const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-    const real tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
-    const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-    const real tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
-    const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
-    const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-        + tube_w_1_t_20*tube_w_1_t_20);
-    const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-    const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-    const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-    const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-    const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-        tube_w_1_t_24*tube_w_1_t_36;
-    const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-    const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-    const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-    const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-        tube_w_1_t_27*tube_w_1_t_35;
-    const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-    const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-    const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-    const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
-        tube_w_1_t_31*tube_w_1_t_35;
-    const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-    const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-    const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-    const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-        tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-    const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-    const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-    const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-    const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-    const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-        tube_w_1_t_43*tube_w_1_t_51;
-    const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-    const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-    const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-    const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 - inv_tube_w_1_t_49*tube_root_1 +
-        tube_w_1_t_48*tube_w_1_t_52 - tube_w_1_t_47*tube_w_1_t_51;
-    const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-    const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-    const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-    const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-    const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-        + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+    v->inv_tube_w_1_t_13 = 1/v->tube_w_1_t_13;
+    v->tube_w_1_t_14 = v->inv_tube_w_1_t_13*v->tube_q_3;
+    v->tube_w_1_t_15 = v->inv_tube_w_1_t_13*tube_w_1_t_4;
+    v->tube_w_1_t_16 = v->inv_tube_w_1_t_13*tube_w_1_t_5;
+    v->tube_w_1_t_17 = v->tube_w_1_t_15*tube_w_1_t_6 + v->tube_w_1_t_16*tube_w_1_t_7 -
+        v->tube_w_1_t_14;
+    const real tube_w_1_t_18 = 1 + v->tube_w_1_t_14*v->tube_w_1_t_17;
+    const real tube_w_1_t_19 = v->tube_w_1_t_15*v->tube_w_1_t_17 - tube_w_1_t_6;
+    const real tube_w_1_t_20 = v->tube_w_1_t_16*v->tube_w_1_t_17 - tube_w_1_t_7;
+    v->tube_w_1_t_21 = v->tube_w_1_t_15*tube_w_1_t_8 - v->tube_w_1_t_16*tube_w_1_t_9;
+    const real tube_w_1_t_22 = v->tube_w_1_t_14*v->tube_w_1_t_21;
+    const real tube_w_1_t_23 = v->tube_w_1_t_15*v->tube_w_1_t_21 - tube_w_1_t_8;
+    const real tube_w_1_t_24 = tube_w_1_t_9 + v->tube_w_1_t_16*v->tube_w_1_t_21;
+    v->tube_w_1_t_25 = tube_w_1_t_10*v->tube_w_1_t_15 - tube_w_1_t_12*v->tube_w_1_t_16;
+    const real tube_w_1_t_26 = v->tube_w_1_t_14*v->tube_w_1_t_25;
+    const real tube_w_1_t_27 = tube_w_1_t_10 - v->tube_w_1_t_15*v->tube_w_1_t_25;
+    const real tube_w_1_t_28 = tube_w_1_t_12 + v->tube_w_1_t_16*v->tube_w_1_t_25;
+    v->tube_w_1_t_29 = tube_w_1_t*v->tube_w_1_t_15 - v->tube_w_1_t_16*tube_w_1_t_3;
+    const real tube_w_1_t_30 = v->tube_w_1_t_14*v->tube_w_1_t_29;
+    const real tube_w_1_t_31 = tube_w_1_t - v->tube_w_1_t_15*v->tube_w_1_t_29;
+    const real tube_w_1_t_32 = tube_w_1_t_3 + v->tube_w_1_t_16*v->tube_w_1_t_29;
+    v->tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
+        tube_w_1_t_20*tube_w_1_t_20);
+    v->inv_tube_w_1_t_33 = 1/v->tube_w_1_t_33;
+    v->tube_w_1_t_34 = v->inv_tube_w_1_t_33*tube_w_1_t_18;
+    v->tube_w_1_t_35 = v->inv_tube_w_1_t_33*tube_w_1_t_19;
+    v->tube_w_1_t_36 = v->inv_tube_w_1_t_33*tube_w_1_t_20;
+    v->tube_w_1_t_37 = tube_w_1_t_22*v->tube_w_1_t_34 + tube_w_1_t_23*v->tube_w_1_t_35 +
+        tube_w_1_t_24*v->tube_w_1_t_36;
+    const real tube_w_1_t_38 = tube_w_1_t_22 - v->tube_w_1_t_34*v->tube_w_1_t_37;
+    const real tube_w_1_t_39 = tube_w_1_t_23 - v->tube_w_1_t_35*v->tube_w_1_t_37;
+    const real tube_w_1_t_40 = tube_w_1_t_24 - v->tube_w_1_t_36*v->tube_w_1_t_37;
+    v->tube_w_1_t_41 = tube_w_1_t_26*v->tube_w_1_t_34 + tube_w_1_t_28*v->tube_w_1_t_36 -
+        tube_w_1_t_27*v->tube_w_1_t_35;
+    const real tube_w_1_t_42 = tube_w_1_t_26 - v->tube_w_1_t_34*v->tube_w_1_t_41;
+    const real tube_w_1_t_43 = tube_w_1_t_27 + v->tube_w_1_t_35*v->tube_w_1_t_41;
+    const real tube_w_1_t_44 = tube_w_1_t_28 - v->tube_w_1_t_36*v->tube_w_1_t_41;
+    v->tube_w_1_t_45 = tube_w_1_t_30*v->tube_w_1_t_34 + tube_w_1_t_32*v->tube_w_1_t_36 -
+        tube_w_1_t_31*v->tube_w_1_t_35;
+    const real tube_w_1_t_46 = tube_w_1_t_30 - v->tube_w_1_t_34*v->tube_w_1_t_45;
+    const real tube_w_1_t_47 = tube_w_1_t_31 + v->tube_w_1_t_35*v->tube_w_1_t_45;
+    const real tube_w_1_t_48 = tube_w_1_t_32 - v->tube_w_1_t_36*v->tube_w_1_t_45;
+    v->tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
+        tube_w_1_t_40*tube_w_1_t_40);
+    v->inv_tube_w_1_t_49 = 1/v->tube_w_1_t_49;
+    v->tube_w_1_t_50 = v->inv_tube_w_1_t_49*tube_w_1_t_38;
+    v->tube_w_1_t_51 = v->inv_tube_w_1_t_49*tube_w_1_t_39;
+    v->tube_w_1_t_52 = v->inv_tube_w_1_t_49*tube_w_1_t_40;
+    v->tube_w_1_t_53 = tube_w_1_t_42*v->tube_w_1_t_50 + tube_w_1_t_44*v->tube_w_1_t_52 -
+        tube_w_1_t_43*v->tube_w_1_t_51;
+    const real tube_w_1_t_54 = v->tube_w_1_t_50*v->tube_w_1_t_53 - tube_w_1_t_42;
+    const real tube_w_1_t_55 = v->inv_tube_w_1_t_49*v->tube_w_1_t_53;
+    const real tube_w_1_t_56 = tube_w_1_t_43 + v->tube_w_1_t_51*v->tube_w_1_t_53;
+    const real tube_w_1_t_57 = v->tube_w_1_t_52*v->tube_w_1_t_53 - tube_w_1_t_44;
+    v->tube_w_1_t_58 = tube_w_1_t_46*v->tube_w_1_t_50 - v->inv_tube_w_1_t_49*tube_root_1 +
+        tube_w_1_t_48*v->tube_w_1_t_52 - tube_w_1_t_47*v->tube_w_1_t_51;
+    const real tube_w_1_t_59 = v->tube_w_1_t_50*v->tube_w_1_t_58 - tube_w_1_t_46;
+    const real tube_w_1_t_60 = tube_root_1 + v->inv_tube_w_1_t_49*v->tube_w_1_t_58;
+    const real tube_w_1_t_61 = tube_w_1_t_47 + v->tube_w_1_t_51*v->tube_w_1_t_58;
+    const real tube_w_1_t_62 = v->tube_w_1_t_52*v->tube_w_1_t_58 - tube_w_1_t_48;
+    v->tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
+        tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
         tube_w_1_t_57*tube_w_1_t_57);
-    const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-    const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-    const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-    const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-    const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-    const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-    const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-        tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-        tube_w_1_t_2*tube_w_1_t_67;
-    const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-    const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-    const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-    const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-    const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-    const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-        + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+    v->inv_tube_w_1_t_63 = 1/v->tube_w_1_t_63;
+    v->tube_w_1_t_64 = v->inv_tube_w_1_t_63*tube_w_1_t_54;
+    v->tube_w_1_t_65 = v->inv_tube_w_1_t_63*tube_w_1_t_55;
+    v->tube_w_1_t_66 = v->inv_tube_w_1_t_63*tube_w_1_t_56;
+    v->tube_w_1_t_67 = v->inv_tube_w_1_t_63*tube_w_1_t_11;
+    v->tube_w_1_t_68 = v->inv_tube_w_1_t_63*tube_w_1_t_57;
+    v->tube_w_1_t_69 = tube_w_1_t_59*v->tube_w_1_t_64 + tube_w_1_t_60*v->tube_w_1_t_65 +
+        tube_w_1_t_61*v->tube_w_1_t_66 + tube_w_1_t_62*v->tube_w_1_t_68 -
+        tube_w_1_t_2*v->tube_w_1_t_67;
+    const real tube_w_1_t_70 = tube_w_1_t_59 - v->tube_w_1_t_64*v->tube_w_1_t_69;
+    const real tube_w_1_t_71 = tube_w_1_t_60 - v->tube_w_1_t_65*v->tube_w_1_t_69;
+    const real tube_w_1_t_72 = tube_w_1_t_61 - v->tube_w_1_t_66*v->tube_w_1_t_69;
+    const real tube_w_1_t_73 = tube_w_1_t_2 + v->tube_w_1_t_67*v->tube_w_1_t_69;
+    const real tube_w_1_t_74 = tube_w_1_t_62 - v->tube_w_1_t_68*v->tube_w_1_t_69;
+    v->tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
+        tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
         tube_w_1_t_74*tube_w_1_t_74);
-    const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
+    v->inv_tube_w_1_t_75 = 1/v->tube_w_1_t_75;
+    v->tube_w_1_t_76 = v->inv_tube_w_1_t_75*tube_w_1_t_70;
+    v->tube_w_1_t_77 = v->inv_tube_w_1_t_75*tube_w_1_t_71;
+    /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
+    v->tube_m1_w_1_t = v->inv_tube_w_1_t_75*tube_w_1_t_72;
+    /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
+    v->tube_m2_w_1_t = v->inv_tube_w_1_t_75*tube_w_1_t_73;
+    /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
+    v->tube_m3_w_1_t = v->inv_tube_w_1_t_75*tube_w_1_t_74;
     /* (tube-nd_m1) rate of moment direction 1 */
-    const real tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 +
-        tube_e_1_in_axes2_x*tube_n_m1_t_12;
+    v->tube_end_p1_in_axes2_x = v->tube_c_2*tube_n_m1_t_13 +
+        v->tube_e_1_in_axes2_x*tube_n_m1_t_12;
     /* (tube-nd_m2) rate of moment direction 2 */
-    const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1;
+    v->tube_end_p2_in_axes2_z = v->tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*v->tube_s_1;
     /* (tube-nd_m3) rate of moment direction 3 */
-    const real tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 -
-        tube_c_2*tube_n_m3_t_3;
-    /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real tube_g_in_axes2_z = m->tube_acc_3_t_2[i]*tube_c_1 -
-        m->tube_acc_3_t[i]*tube_s_1;
-    /* (tube-n_c1) unit force of the constraint wrench */
-    const real tube_n_c1_t = tube_c_1*tube_e_1_in_axes2_x;
-    const real tube_n_c1_t_2 = tube_e_1_in_axes2_x*tube_s_1;
-    const real tube_n_c1_x = m->tube_base_frame_xx[i]*tube_n_c1_t -
-        m->tube_base_frame_xz[i]*tube_c_2 + m->tube_base_frame_xy[i]*tube_n_c1_t_2;
-    const real tube_n_c1_y = m->tube_base_frame_yx[i]*tube_n_c1_t -
-        m->tube_base_frame_yz[i]*tube_c_2 + m->tube_base_frame_yy[i]*tube_n_c1_t_2;
-    const real tube_n_c1_z = m->tube_base_frame_zx[i]*tube_n_c1_t -
-        m->tube_base_frame_zz[i]*tube_c_2 + m->tube_base_frame_zy[i]*tube_n_c1_t_2;
-    /* (tube-n_c2) unit force of the constraint wrench */
-    const real tube_n_c2_x = m->tube_base_frame_xy[i]*tube_c_1 -
-        m->tube_base_frame_xx[i]*tube_s_1;
-    const real tube_n_c2_y = m->tube_base_frame_yy[i]*tube_c_1 -
-        m->tube_base_frame_yx[i]*tube_s_1;
-    const real tube_n_c2_z = m->tube_base_frame_zy[i]*tube_c_1 -
-        m->tube_base_frame_zx[i]*tube_s_1;
-    v->tube_q_x = tube_q_x;
-    v->tube_q_y = tube_q_y;
-    v->tube_q_z = tube_q_z;
-    v->tube_root_1_t = tube_root_1_t;
-    v->tube_root_1 = tube_root_1;
-    v->tube_c_1 = tube_c_1;
-    v->tube_s_1 = tube_s_1;
-    v->tube_q_3_t = tube_q_3_t;
-    v->tube_q_3 = tube_q_3;
-    v->tube_c_2 = tube_c_2;
-    v->tube_e_1_in_axes2_x = tube_e_1_in_axes2_x;
-    v->axis_z_tube_axes2_x = axis_z_tube_axes2_x;
-    v->axis_z_tube_axes2_y = axis_z_tube_axes2_y;
-    v->axis_z_tube_axes2_z = axis_z_tube_axes2_z;
-    v->axis_y_tube_axes2_x = axis_y_tube_axes2_x;
-    v->axis_y_tube_axes2_y = axis_y_tube_axes2_y;
-    v->axis_y_tube_axes2_z = axis_y_tube_axes2_z;
-    v->axis_x_tube_axes2_x = axis_x_tube_axes2_x;
-    v->axis_x_tube_axes2_y = axis_x_tube_axes2_y;
-    v->axis_x_tube_axes2_z = axis_x_tube_axes2_z;
-    v->tube_n_m1_t = tube_n_m1_t;
-    v->tube_n_m1_t_2 = tube_n_m1_t_2;
-    v->tube_n_m1_t_3 = tube_n_m1_t_3;
-    v->tube_n_m1_t_4 = tube_n_m1_t_4;
-    v->tube_n_m1_t_5 = tube_n_m1_t_5;
-    v->tube_n_m1_t_6 = tube_n_m1_t_6;
-    v->tube_n_m1_t_7 = tube_n_m1_t_7;
-    v->tube_n_m1_t_8 = tube_n_m1_t_8;
-    v->tube_n_m1_t_9 = tube_n_m1_t_9;
-    v->tube_n_m1_t_10 = tube_n_m1_t_10;
-    v->tube_n_m1_t_11 = tube_n_m1_t_11;
-    v->tube_n_m1_t_12 = tube_n_m1_t_12;
-    v->tube_end_p1_in_axes2_z = tube_end_p1_in_axes2_z;
-    v->tube_n_m1_in_axes2_z = tube_n_m1_in_axes2_z;
-    v->tube_n_m1_in_axes1_z = tube_n_m1_in_axes1_z;
-    v->tube_n_m2_t = tube_n_m2_t;
-    v->tube_n_m2_t_2 = tube_n_m2_t_2;
-    v->tube_n_m2_t_3 = tube_n_m2_t_3;
-    v->tube_n_m2_in_axes2_y = tube_n_m2_in_axes2_y;
-    v->tube_end_p2_in_axes2_y = tube_end_p2_in_axes2_y;
-    v->tube_n_m3_t = tube_n_m3_t;
-    v->tube_n_m3_t_2 = tube_n_m3_t_2;
-    v->tube_n_m3_t_3 = tube_n_m3_t_3;
-    v->tube_end_p3_in_axes2_z = tube_end_p3_in_axes2_z;
-    v->tube_n_m3_in_axes2_z = tube_n_m3_in_axes2_z;
-    v->tube_n_m3_t_5 = tube_n_m3_t_5;
-    v->tube_f_c1_t = tube_f_c1_t;
-    v->inv_tube_f_c1_t = inv_tube_f_c1_t;
-    v->tube_m1_c1_t = tube_m1_c1_t;
-    v->tube_m3_c1_t = tube_m3_c1_t;
-    v->tube_m1_c2_t = tube_m1_c2_t;
-    v->tube_m3_c2 = tube_m3_c2;
-    v->tube_m1_c3 = tube_m1_c3;
-    v->tube_m3_c3_t = tube_m3_c3_t;
-    v->tube_mu_c1_in_axes2_y = tube_mu_c1_in_axes2_y;
-    v->tube_mu_c1_in_axes2_x = tube_mu_c1_in_axes2_x;
-    v->tube_mu_c1_in_axes2_z = tube_mu_c1_in_axes2_z;
-    v->tube_mu_c2_in_axes2_y = tube_mu_c2_in_axes2_y;
-    v->tube_mu_c2_t = tube_mu_c2_t;
-    v->tube_mu_c2_in_axes2_z = tube_mu_c2_in_axes2_z;
-    v->tube_size_c3 = tube_size_c3;
-    v->inv_tube_size_c3 = inv_tube_size_c3;
-    v->tube_mu1_c3 = tube_mu1_c3;
-    v->tube_mu3_c3_t = tube_mu3_c3_t;
-    v->tube_mu_c3_x = tube_mu_c3_x;
-    v->tube_mu_c3_y = tube_mu_c3_y;
-    v->tube_mu_c3_z = tube_mu_c3_z;
-    v->tube_w_1_t = tube_w_1_t;
-    v->tube_w_1_t_2 = tube_w_1_t_2;
-    v->tube_w_1_t_13 = tube_w_1_t_13;
-    v->inv_tube_w_1_t_13 = inv_tube_w_1_t_13;
-    v->tube_w_1_t_14 = tube_w_1_t_14;
-    v->tube_w_1_t_15 = tube_w_1_t_15;
-    v->tube_w_1_t_16 = tube_w_1_t_16;
-    v->tube_w_1_t_17 = tube_w_1_t_17;
-    v->tube_w_1_t_21 = tube_w_1_t_21;
-    v->tube_w_1_t_25 = tube_w_1_t_25;
-    v->tube_w_1_t_29 = tube_w_1_t_29;
-    v->tube_w_1_t_30 = tube_w_1_t_30;
-    v->tube_w_1_t_31 = tube_w_1_t_31;
-    v->tube_w_1_t_32 = tube_w_1_t_32;
-    v->tube_w_1_t_33 = tube_w_1_t_33;
-    v->inv_tube_w_1_t_33 = inv_tube_w_1_t_33;
-    v->tube_w_1_t_34 = tube_w_1_t_34;
-    v->tube_w_1_t_35 = tube_w_1_t_35;
-    v->tube_w_1_t_36 = tube_w_1_t_36;
-    v->tube_w_1_t_37 = tube_w_1_t_37;
-    v->tube_w_1_t_41 = tube_w_1_t_41;
-    v->tube_w_1_t_45 = tube_w_1_t_45;
-    v->tube_w_1_t_49 = tube_w_1_t_49;
-    v->inv_tube_w_1_t_49 = inv_tube_w_1_t_49;
-    v->tube_w_1_t_50 = tube_w_1_t_50;
-    v->tube_w_1_t_51 = tube_w_1_t_51;
-    v->tube_w_1_t_52 = tube_w_1_t_52;
-    v->tube_w_1_t_53 = tube_w_1_t_53;
-    v->tube_w_1_t_58 = tube_w_1_t_58;
-    v->tube_w_1_t_63 = tube_w_1_t_63;
-    v->inv_tube_w_1_t_63 = inv_tube_w_1_t_63;
-    v->tube_w_1_t_64 = tube_w_1_t_64;
-    v->tube_w_1_t_65 = tube_w_1_t_65;
-    v->tube_w_1_t_66 = tube_w_1_t_66;
-    v->tube_w_1_t_67 = tube_w_1_t_67;
-    v->tube_w_1_t_68 = tube_w_1_t_68;
-    v->tube_w_1_t_69 = tube_w_1_t_69;
-    v->tube_w_1_t_70 = tube_w_1_t_70;
-    v->tube_w_1_t_71 = tube_w_1_t_71;
-    v->tube_w_1_t_72 = tube_w_1_t_72;
-    v->tube_w_1_t_73 = tube_w_1_t_73;
-    v->tube_w_1_t_74 = tube_w_1_t_74;
-    v->tube_w_1_t_75 = tube_w_1_t_75;
-    v->inv_tube_w_1_t_75 = inv_tube_w_1_t_75;
-    v->tube_end_p1_in_axes2_x = tube_end_p1_in_axes2_x;
-    v->tube_end_p2_in_axes2_z = tube_end_p2_in_axes2_z;
-    v->tube_end_p3_in_axes2_y = tube_end_p3_in_axes2_y;
-    v->tube_g_in_axes2_z = tube_g_in_axes2_z;
-    v->tube_n_c1_x = tube_n_c1_x;
-    v->tube_n_c1_y = tube_n_c1_y;
-    v->tube_n_c1_z = tube_n_c1_z;
-    v->tube_n_c2_x = tube_n_c2_x;
-    v->tube_n_c2_y = tube_n_c2_y;
-    v->tube_n_c2_z = tube_n_c2_z;
+    v->tube_end_p3_in_axes2_y = v->tube_e_1_in_axes2_x*tube_n_m3_t_4 -
+        v->tube_c_2*tube_n_m3_t_3;
+    /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real tube_acc_3_t_4 = m->tube_acc_3_t[i]*v->tube_c_1 +
+        m->tube_acc_3_t_2[i]*v->tube_s_1;
+    v->tube_g_in_axes2_z = m->tube_acc_3_t_2[i]*v->tube_c_1 - m->tube_acc_3_t[i]*v->tube_s_1;
+    v->tube_g_in_axes2_x = m->tube_acc_3_t_3[i]*v->tube_e_1_in_axes2_x +
+        tube_acc_3_t_4*v->tube_c_2;
+    v->tube_g_in_axes2_y = tube_acc_3_t_4*v->tube_e_1_in_axes2_x -
+        m->tube_acc_3_t_3[i]*v->tube_c_2;
+    /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    v->tube_mu_2_t_4 = v->tube_g_in_axes2_z*m->tube_h_2_in_spec2_z[i] +
+        v->tube_g_in_axes2_y*m->tube_h_2_in_spec2_y[i];
+    v->tube_mu_2_t_5 = v->tube_g_in_axes2_x*m->tube_h_2_in_spec2_y[i] -
+        v->tube_g_in_axes2_z*m->tube_h_2_in_spec2_x[i];
+    v->tube_mu_2_t_6 = v->tube_g_in_axes2_x*m->tube_h_2_in_spec2_z[i] +
+        v->tube_g_in_axes2_y*m->tube_h_2_in_spec2_x[i];
+    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+    v->tube_Hk_a_1_x = v->axis_y_tube_axes2_z*v->tube_q_y - v->axis_y_tube_axes2_y*v->tube_q_z
+        + v->tube_mu_c1_x;
+    v->tube_Hk_a_1_y = v->axis_y_tube_axes2_x*v->tube_q_z - v->axis_y_tube_axes2_z*v->tube_q_x
+        + v->tube_mu_c1_y;
+    v->tube_Hk_a_1_z = v->axis_y_tube_axes2_y*v->tube_q_x - v->axis_y_tube_axes2_x*v->tube_q_y
+        + v->tube_mu_c1_z;
+    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+    v->tube_Hk_a_2_x = v->axis_z_tube_axes2_z*v->tube_q_y - v->axis_z_tube_axes2_y*v->tube_q_z
+        + v->tube_mu_c2_x;
+    v->tube_Hk_a_2_y = v->axis_z_tube_axes2_x*v->tube_q_z - v->axis_z_tube_axes2_z*v->tube_q_x
+        + v->tube_mu_c2_y;
+    v->tube_Hk_a_2_z = v->axis_z_tube_axes2_y*v->tube_q_x - v->axis_z_tube_axes2_x*v->tube_q_y
+        + v->tube_mu_c2_z;
 }
 
 INLINE void stage_tube_A_X(size_t w, size_t j, const real *A, values_tube *v)
 {
-    /* (tube-a_p) acceleration of the connection point without its centripetal part */
+    /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real alpha_x = A[3*w + j];
     const real alpha_y = A[4*w + j];
     const real alpha_z = A[5*w + j];
-    const real t_ddot_x = A[0*w + j];
-    const real tube_a_p_x = t_ddot_x + alpha_y*v->tube_q_z - alpha_z*v->tube_q_y;
-    const real alpha_x = A[3*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real tube_a_p_y = t_ddot_y + alpha_z*v->tube_q_x - alpha_x*v->tube_q_z;
-    const real t_ddot_z = A[2*w + j];
-    const real tube_a_p_z = t_ddot_z + alpha_x*v->tube_q_y - alpha_y*v->tube_q_x;
-    /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
     const real tube_alpha_in_axes2_y = alpha_x*v->axis_y_tube_axes2_x +
         alpha_y*v->axis_y_tube_axes2_y + alpha_z*v->axis_y_tube_axes2_z;
     const real tube_alpha_in_axes2_z = alpha_x*v->axis_z_tube_axes2_x +
         alpha_y*v->axis_z_tube_axes2_y + alpha_z*v->axis_z_tube_axes2_z;
-    const real tube_etad_1_t = tube_alpha_in_axes2_y*v->tube_end_p1_in_axes2_z -
+    v->tube_etad_1_t = tube_alpha_in_axes2_y*v->tube_end_p1_in_axes2_z -
         tube_alpha_in_axes2_z*v->tube_n_m1_in_axes2_z;
     /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
     const real tube_alpha_in_axes2_x = alpha_x*v->axis_x_tube_axes2_x +
         alpha_y*v->axis_x_tube_axes2_y + alpha_z*v->axis_x_tube_axes2_z;
-    const real tube_etad_2_t = tube_alpha_in_axes2_x*v->tube_end_p2_in_axes2_y -
+    v->tube_etad_2_t = tube_alpha_in_axes2_x*v->tube_end_p2_in_axes2_y -
         tube_alpha_in_axes2_y*v->tube_n_m2_in_axes2_y;
     /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
-    const real tube_etad_3_t = tube_alpha_in_axes2_x*v->tube_end_p3_in_axes2_z -
+    v->tube_etad_3_t = tube_alpha_in_axes2_x*v->tube_end_p3_in_axes2_z -
         tube_alpha_in_axes2_z*v->tube_n_m3_in_axes2_z;
-    v->tube_a_p_x = tube_a_p_x;
-    v->tube_a_p_y = tube_a_p_y;
-    v->tube_a_p_z = tube_a_p_z;
-    v->tube_etad_1_t = tube_etad_1_t;
-    v->tube_etad_2_t = tube_etad_2_t;
-    v->tube_etad_3_t = tube_etad_3_t;
 }
 
-INLINE void stage_tube_V_X(size_t w, size_t j, const real *V, values_tube *v)
+INLINE void stage_tube_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_tube *v)
 {
     /* (tube-S_dot) velocity of the connection point */
     const real omega_y = V[4*w + j];
@@ -2589,7 +2497,7 @@ INLINE void stage_tube_V_X(size_t w, size_t j, const real *V, values_tube *v)
     const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
     const real t_dot_z = V[2*w + j];
     const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
-    const real tube_S_dot_in_axes2_x = v->axis_x_tube_axes2_x*tube_S_dot_x +
+    v->tube_S_dot_in_axes2_x = v->axis_x_tube_axes2_x*tube_S_dot_x +
         v->axis_x_tube_axes2_y*tube_S_dot_y + v->axis_x_tube_axes2_z*tube_S_dot_z;
     const real tube_S_dot_in_axes2_y = v->axis_y_tube_axes2_x*tube_S_dot_x +
         v->axis_y_tube_axes2_y*tube_S_dot_y + v->axis_y_tube_axes2_z*tube_S_dot_z;
@@ -2610,1422 +2518,257 @@ INLINE void stage_tube_V_X(size_t w, size_t j, const real *V, values_tube *v)
     /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
     const real tube_eta_3 = v->tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
         v->tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
-    /* (tube-u_1) centripetal acceleration of the connection point */
-    const real tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
-    const real tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
-    const real tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
-    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-    const real tube_bias_t_3 = 2*tube_S_dot_in_axes2_x;
     /* (tube-qd_1) rate of joint 1 */
-    const real tube_qd_1_t_6 = R(1.35)*tube_eta_1;
-    const real tube_qd_1_t_7 = R(1.35)*tube_eta_2;
-    const real tube_qd_1_t_8 = R(1.35)*tube_eta_3;
-    v->tube_S_dot_t_3 = tube_S_dot_t_3;
-    v->tube_S_dot_t_4 = tube_S_dot_t_4;
-    v->tube_S_dot_t_5 = tube_S_dot_t_5;
-    v->tube_S_dot_in_axes2_x = tube_S_dot_in_axes2_x;
-    v->tube_S_dot_in_axes2_y = tube_S_dot_in_axes2_y;
-    v->tube_S_dot_in_axes2_z = tube_S_dot_in_axes2_z;
-    v->tube_omega_in_axes2_y = tube_omega_in_axes2_y;
-    v->tube_omega_in_axes2_z = tube_omega_in_axes2_z;
-    v->tube_eta_1 = tube_eta_1;
-    v->tube_omega_in_axes2_x = tube_omega_in_axes2_x;
-    v->tube_eta_2 = tube_eta_2;
-    v->tube_eta_3 = tube_eta_3;
-    v->tube_u_1_x = tube_u_1_x;
-    v->tube_u_1_y = tube_u_1_y;
-    v->tube_u_1_z = tube_u_1_z;
-    v->tube_bias_t_3 = tube_bias_t_3;
-    v->tube_qd_1_t_6 = tube_qd_1_t_6;
-    v->tube_qd_1_t_7 = tube_qd_1_t_7;
-    v->tube_qd_1_t_8 = tube_qd_1_t_8;
+    const real tube_qd_1_t = R(1.35)*tube_eta_1;
+    const real tube_qd_1_t_2 = R(1.35)*tube_eta_2;
+    const real tube_qd_1_t_3 = R(1.35)*tube_eta_3;
+    v->tube_qd_1 = v->inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*v->tube_w_1_t_76 +
+        tube_S_dot_in_axes2_z*v->tube_w_1_t_77 + v->tube_m1_w_1_t*tube_qd_1_t +
+        v->tube_m3_w_1_t*tube_qd_1_t_3 - v->tube_m2_w_1_t*tube_qd_1_t_2);
+    /* (tube-qd_2) rate of joint 2 */
+    const real tube_qd_2_t = v->inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*v->tube_w_1_t_64 +
+        tube_S_dot_in_axes2_z*v->tube_w_1_t_65 + tube_qd_1_t*v->tube_w_1_t_66 +
+        tube_qd_1_t_2*v->tube_w_1_t_67 + tube_qd_1_t_3*v->tube_w_1_t_68 -
+        v->tube_qd_1*v->tube_w_1_t_69);
+    const real tube_qd_2_t_2 =
+        v->inv_tube_w_1_t_49*(v->inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+        tube_S_dot_in_axes2_y*v->tube_w_1_t_50 + tube_qd_1_t*v->tube_w_1_t_51 +
+        tube_qd_1_t_3*v->tube_w_1_t_52 + v->tube_qd_1*v->tube_w_1_t_58 +
+        tube_qd_2_t*v->tube_w_1_t_53);
+    const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*v->tube_w_1_t_14 +
+        tube_qd_1_t*v->tube_w_1_t_15 + tube_qd_1_t_3*v->tube_w_1_t_16 -
+        v->tube_qd_1*v->tube_w_1_t_29 - tube_qd_2_t*v->tube_w_1_t_25 +
+        tube_qd_2_t_2*v->tube_w_1_t_21 +
+        v->inv_tube_w_1_t_33*v->tube_w_1_t_17*(tube_S_dot_in_axes2_y*v->tube_w_1_t_34 +
+        tube_qd_1_t*v->tube_w_1_t_35 + tube_qd_1_t_3*v->tube_w_1_t_36 +
+        v->tube_qd_1*v->tube_w_1_t_45 + tube_qd_2_t*v->tube_w_1_t_41 -
+        tube_qd_2_t_2*v->tube_w_1_t_37);
+    v->tube_qd_2 = v->inv_tube_w_1_t_13*tube_qd_2_t_3;
+    /* (tube-omega_1) angular velocity of link 1 */
+    const real tube_omega_1_in_axes2_x = v->tube_e_1_in_axes2_x*v->tube_qd_1;
+    const real tube_omega_1_in_axes2_y = -v->tube_c_2*v->tube_qd_1;
+    /* (tube-W_2) centripetal tensor of link 2 */
+    v->tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*v->tube_qd_2;
+    v->tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*v->tube_qd_2;
+    const real tube_W_2_t = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
+    const real tube_W_2_t_2 = v->tube_qd_2*v->tube_qd_2;
+    v->tube_W_2_t_3 = tube_W_2_t + tube_W_2_t_2;
+    v->tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
+    /* (tube-u_1) centripetal acceleration of the connection point */
+    v->tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
+    v->tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
+    v->tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
+    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
+    v->tube_bias_t = v->tube_W_2_in_axes2_xz*v->tube_q_3;
+    v->tube_bias_t_2 = -v->tube_W_2_in_axes2_xy*v->tube_q_3;
+    const real tube_bias_t_3 = 2*v->tube_S_dot_in_axes2_x;
+    v->tube_bias_t_4 = tube_bias_t_3*v->tube_qd_2;
+    v->tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y;
+    v->tube_bias_in_axes2_y = v->tube_bias_t_4 - v->tube_bias_t_2;
+    v->tube_bias_in_axes2_z = 2*v->tube_bias_t - v->tube_bias_t_5;
+    /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    v->tube_rel_o_in_axes2_y = v->axis_y_tube_axes2_x*v->tube_u_1_x +
+        v->axis_y_tube_axes2_y*v->tube_u_1_y + v->axis_y_tube_axes2_z*v->tube_u_1_z -
+        v->tube_bias_in_axes2_y;
+    v->tube_rel_o_in_axes2_z = v->axis_z_tube_axes2_x*v->tube_u_1_x +
+        v->axis_z_tube_axes2_y*v->tube_u_1_y + v->axis_z_tube_axes2_z*v->tube_u_1_z -
+        v->tube_bias_in_axes2_z;
+    /* (tube-nd_m1) rate of moment direction 1 */
+    const real tube_nd_m1_in_axes2_y = v->tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+        v->tube_n_m1_in_axes2_z*tube_omega_in_axes2_x -
+        v->tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y;
+    const real tube_nd_m1_in_axes2_z = v->tube_end_p1_in_axes2_x*tube_omega_in_axes2_z -
+        v->tube_end_p1_in_axes2_z*tube_omega_in_axes2_x -
+        v->tube_end_p1_in_axes2_x*v->tube_qd_2;
+    /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
+    const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+    const real tube_nu_1_t_3 = tube_omega_in_axes2_z - v->tube_qd_2;
+    const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
+        tube_nu_1_t*(v->tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y +
+        v->tube_end_p1_in_axes2_z*v->tube_qd_2);
+    v->tube_nu_1 = tube_nu_1_t_4 - v->tube_W_2_in_axes2_xz*v->tube_end_p1_in_axes2_z;
+    /* (tube-nd_m2) rate of moment direction 2 */
+    const real tube_nd_m2_in_axes2_x = v->tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+        v->tube_n_m2_in_axes2_y*tube_omega_in_axes2_z -
+        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x;
+    const real tube_nd_m2_in_axes2_y = v->tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+        v->tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
+    /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
+    const real tube_nu_2_t = -v->tube_W_2_in_axes2_xz*v->tube_n_m2_in_axes2_y -
+        v->tube_W_2_in_axes2_yz*v->tube_end_p2_in_axes2_y;
+    const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
+        tube_nd_m2_in_axes2_x*tube_nu_1_t -
+        tube_nu_1_t_3*(-v->tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+        v->tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
+    v->tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
+    /* (tube-nd_m3) rate of moment direction 3 */
+    const real tube_nd_m3_in_axes2_x = v->tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+        v->tube_end_p3_in_axes2_y*tube_omega_in_axes2_x +
+        v->tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x;
+    const real tube_nd_m3_in_axes2_z = v->tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+        v->tube_end_p3_in_axes2_y*tube_omega_in_axes2_z +
+        v->tube_end_p3_in_axes2_y*v->tube_qd_2;
+    /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
+    const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
+        tube_nu_1_t_2*(v->tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x +
+        v->tube_end_p3_in_axes2_z*v->tube_qd_2) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+    v->tube_nu_3 = v->tube_W_2_in_axes2_yz*v->tube_end_p3_in_axes2_z - tube_nu_3_t;
+    /* (tube-f_3) inertia force of link 3 less its weight */
+    const real tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
+    v->tube_f_3_t_2 = v->tube_W_2_t_3*m->tube_h_3_in_spec2_x[i];
+    v->tube_f_3_t_3 = m->tube_h_3_in_spec2_z[i]*(tube_f_3_t + tube_W_2_t_2);
+    v->tube_f_3_t_4 = m->tube_h_3_in_spec2_y[i]*(tube_W_2_t + tube_f_3_t);
+    /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    v->tube_mu_2_t = m->tube_J_group_2_in_axes2_yz[i]*(tube_W_2_t - tube_W_2_t_2);
+    v->tube_mu_2_t_2 = m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_t - tube_W_2_t_2);
+    v->tube_mu_2_t_3 = m->tube_J_group_2_in_axes2_xy[i]*(tube_f_3_t - tube_W_2_t);
 }
 
-INLINE void stage_tube_A_V_X(size_t w, size_t j, const real *V, values_tube *v)
+INLINE void stage_tube_A_V_X(size_t w, size_t j, const real *s, const real *A, values_tube *v)
 {
     /* (tube-S_ddot) acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real tube_S_ddot_x = omega_y*v->tube_S_dot_t_5 - omega_z*v->tube_S_dot_t_4 +
-        v->tube_a_p_x;
-    const real omega_x = V[3*w + j];
-    const real tube_S_ddot_y = omega_z*v->tube_S_dot_t_3 - omega_x*v->tube_S_dot_t_5 +
-        v->tube_a_p_y;
-    const real tube_S_ddot_z = omega_x*v->tube_S_dot_t_4 - omega_y*v->tube_S_dot_t_3 +
-        v->tube_a_p_z;
-    v->tube_S_ddot_x = tube_S_ddot_x;
-    v->tube_S_ddot_y = tube_S_ddot_y;
-    v->tube_S_ddot_z = tube_S_ddot_z;
-}
-
-INLINE void stage_tube_Z_dynamics(const prepared *m, size_t i, values_tube *v)
-{
-    /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real tube_acc_3_o_t = m->tube_acc_3_t[i]*v->tube_c_1 +
-        m->tube_acc_3_t_2[i]*v->tube_s_1;
-    const real tube_g_in_axes2_x = tube_acc_3_o_t*v->tube_c_2 +
-        m->tube_acc_3_t_3[i]*v->tube_e_1_in_axes2_x;
-    const real tube_g_in_axes2_y = tube_acc_3_o_t*v->tube_e_1_in_axes2_x -
-        m->tube_acc_3_t_3[i]*v->tube_c_2;
-    const real tube_acc_3_o_in_axes2_x = v->axis_x_tube_axes2_x*v->tube_u_1_x -
-        tube_g_in_axes2_x + v->axis_x_tube_axes2_y*v->tube_u_1_y +
-        v->axis_x_tube_axes2_z*v->tube_u_1_z;
-    v->tube_g_in_axes2_x = tube_g_in_axes2_x;
-    v->tube_g_in_axes2_y = tube_g_in_axes2_y;
-    v->tube_acc_3_o_in_axes2_x = tube_acc_3_o_in_axes2_x;
-}
-
-INLINE void stage_tube_Z_joint_accelerations(values_tube *v)
-{
-    /* (tube-mu2_c3) moment along direction 2 that goes with it */
-    const real tube_mu2_c3 = 1/v->tube_size_c3;
-    /* (tube-w_1) force part of reciprocal wrench 1 */
-    const real tube_w_1_t_6 = R(1.35)*v->inv_tube_f_c1_t*v->tube_n_m3_t_5*v->tube_q_3;
-    const real tube_w_1_t_7 = R(1.35)*v->inv_tube_f_c1_t*v->tube_n_m1_in_axes1_z*v->tube_q_3;
-    const real tube_w_1_t_8 =
-        R(1.35)*v->inv_tube_f_c1_t*v->tube_n_m3_in_axes2_z*v->tube_root_1;
-    const real tube_w_1_t_9 =
-        R(1.35)*v->inv_tube_f_c1_t*v->tube_n_m1_in_axes2_z*v->tube_root_1;
-    const real tube_w_1_t_10 = R(1.35)*v->tube_m1_c3*tube_mu2_c3;
-    const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
-    const real tube_w_1_t_12 = R(1.35)*v->tube_m3_c3_t*tube_mu2_c3;
-    const real tube_w_1_t_17 = v->tube_w_1_t_15*tube_w_1_t_6 + v->tube_w_1_t_16*tube_w_1_t_7 -
-        v->tube_w_1_t_14;
-    const real tube_w_1_t_18 = 1 + v->tube_w_1_t_14*tube_w_1_t_17;
-    const real tube_w_1_t_19 = v->tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-    const real tube_w_1_t_20 = v->tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-    const real tube_w_1_t_21 = v->tube_w_1_t_15*tube_w_1_t_8 - v->tube_w_1_t_16*tube_w_1_t_9;
-    const real tube_w_1_t_22 = v->tube_w_1_t_14*tube_w_1_t_21;
-    const real tube_w_1_t_23 = v->tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-    const real tube_w_1_t_24 = tube_w_1_t_9 + v->tube_w_1_t_16*tube_w_1_t_21;
-    const real tube_w_1_t_25 = tube_w_1_t_10*v->tube_w_1_t_15 -
-        tube_w_1_t_12*v->tube_w_1_t_16;
-    const real tube_w_1_t_26 = v->tube_w_1_t_14*tube_w_1_t_25;
-    const real tube_w_1_t_27 = tube_w_1_t_10 - v->tube_w_1_t_15*tube_w_1_t_25;
-    const real tube_w_1_t_28 = tube_w_1_t_12 + v->tube_w_1_t_16*tube_w_1_t_25;
-    const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-        + tube_w_1_t_20*tube_w_1_t_20);
-    const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-    const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-    const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-    const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-    const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-        tube_w_1_t_24*tube_w_1_t_36;
-    const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-    const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-    const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-    const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-        tube_w_1_t_27*tube_w_1_t_35;
-    const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-    const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-    const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-    const real tube_w_1_t_45 = v->tube_w_1_t_30*tube_w_1_t_34 + v->tube_w_1_t_32*tube_w_1_t_36
-        - v->tube_w_1_t_31*tube_w_1_t_35;
-    const real tube_w_1_t_46 = v->tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-    const real tube_w_1_t_47 = v->tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-    const real tube_w_1_t_48 = v->tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-    const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-        tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-    const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-    const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-    const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-    const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-    const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-        tube_w_1_t_43*tube_w_1_t_51;
-    const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-    const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-    const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-    const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 - inv_tube_w_1_t_49*v->tube_root_1
-        + tube_w_1_t_48*tube_w_1_t_52 - tube_w_1_t_47*tube_w_1_t_51;
-    const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-    const real tube_w_1_t_60 = v->tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-    const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-    const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-    const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-        + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-        tube_w_1_t_57*tube_w_1_t_57);
-    const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-    const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-    const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-    const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-    const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-    const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-    const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-        tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-        v->tube_w_1_t_2*tube_w_1_t_67;
-    const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-    const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-    const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-    const real tube_w_1_t_73 = v->tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-    const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-    const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-        + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-        tube_w_1_t_74*tube_w_1_t_74);
-    /* (tube-qd_1) rate of joint 1 */
-    const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
-    const real tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70;
-    const real tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71;
-    const real tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72;
-    const real tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73;
-    const real tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74;
-    const real tube_qd_1 = inv_tube_w_1_t_75*(v->tube_S_dot_in_axes2_y*tube_qd_1_t +
-        v->tube_S_dot_in_axes2_z*tube_qd_1_t_2 + tube_qd_1_t_3*v->tube_qd_1_t_6 +
-        tube_qd_1_t_5*v->tube_qd_1_t_8 - tube_qd_1_t_4*v->tube_qd_1_t_7);
-    /* (tube-qd_2) rate of joint 2 */
-    const real tube_qd_2_t = inv_tube_w_1_t_63*(v->tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-        v->tube_S_dot_in_axes2_z*tube_w_1_t_65 + v->tube_qd_1_t_6*tube_w_1_t_66 +
-        v->tube_qd_1_t_7*tube_w_1_t_67 + v->tube_qd_1_t_8*tube_w_1_t_68 -
-        tube_qd_1*tube_w_1_t_69);
-    const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*v->tube_S_dot_in_axes2_z +
-        v->tube_S_dot_in_axes2_y*tube_w_1_t_50 + v->tube_qd_1_t_6*tube_w_1_t_51 +
-        v->tube_qd_1_t_8*tube_w_1_t_52 + tube_qd_1*tube_w_1_t_58 + tube_qd_2_t*tube_w_1_t_53);
-    const real tube_qd_2_t_3 = v->tube_S_dot_in_axes2_y*v->tube_w_1_t_14 +
-        v->tube_qd_1_t_6*v->tube_w_1_t_15 + v->tube_qd_1_t_8*v->tube_w_1_t_16 -
-        tube_qd_1*v->tube_w_1_t_29 - tube_qd_2_t*tube_w_1_t_25 + tube_qd_2_t_2*tube_w_1_t_21 +
-        inv_tube_w_1_t_33*tube_w_1_t_17*(v->tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-        v->tube_qd_1_t_6*tube_w_1_t_35 + v->tube_qd_1_t_8*tube_w_1_t_36 +
-        tube_qd_1*tube_w_1_t_45 + tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37);
-    const real tube_qd_2 = v->inv_tube_w_1_t_13*tube_qd_2_t_3;
-    /* (tube-omega_1) angular velocity of link 1 */
-    const real tube_omega_1_in_axes2_x = v->tube_e_1_in_axes2_x*tube_qd_1;
-    const real tube_omega_1_in_axes2_y = -v->tube_c_2*tube_qd_1;
-    /* (tube-W_2) centripetal tensor of link 2 */
-    const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
-    const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
-    /* (tube-nd_m1) rate of moment direction 1 */
-    const real tube_nd_m1_in_axes2_y = v->tube_end_p1_in_axes2_x*v->tube_omega_in_axes2_y -
-        v->tube_n_m1_in_axes2_z*v->tube_omega_in_axes2_x -
-        v->tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y;
-    const real tube_nd_m1_in_axes2_z = v->tube_end_p1_in_axes2_x*v->tube_omega_in_axes2_z -
-        v->tube_end_p1_in_axes2_z*v->tube_omega_in_axes2_x -
-        v->tube_end_p1_in_axes2_x*tube_qd_2;
-    /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real tube_nu_1_t = tube_omega_1_in_axes2_x - v->tube_omega_in_axes2_x;
-    const real tube_nu_1_t_2 = v->tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
-    const real tube_nu_1_t_3 = v->tube_omega_in_axes2_z - tube_qd_2;
-    const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
-        tube_nu_1_t*(v->tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y +
-        v->tube_end_p1_in_axes2_z*tube_qd_2);
-    const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v->tube_end_p1_in_axes2_z;
-    /* (tube-nd_m2) rate of moment direction 2 */
-    const real tube_nd_m2_in_axes2_x = v->tube_end_p2_in_axes2_z*v->tube_omega_in_axes2_x -
-        v->tube_n_m2_in_axes2_y*v->tube_omega_in_axes2_z -
-        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x;
-    const real tube_nd_m2_in_axes2_y = v->tube_end_p2_in_axes2_z*v->tube_omega_in_axes2_y -
-        v->tube_end_p2_in_axes2_y*v->tube_omega_in_axes2_z -
-        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
-    /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-    const real tube_nu_2_t = -tube_W_2_in_axes2_xz*v->tube_n_m2_in_axes2_y -
-        tube_W_2_in_axes2_yz*v->tube_end_p2_in_axes2_y;
-    const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
-        tube_nd_m2_in_axes2_x*tube_nu_1_t -
-        tube_nu_1_t_3*(-v->tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-        v->tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
-    const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
-    /* (tube-nd_m3) rate of moment direction 3 */
-    const real tube_nd_m3_in_axes2_x = v->tube_n_m3_in_axes2_z*v->tube_omega_in_axes2_y -
-        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_x +
-        v->tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x;
-    const real tube_nd_m3_in_axes2_z = v->tube_end_p3_in_axes2_z*v->tube_omega_in_axes2_y -
-        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_z +
-        v->tube_end_p3_in_axes2_y*tube_qd_2;
-    /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-    const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-        tube_nu_1_t_2*(v->tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x +
-        v->tube_end_p3_in_axes2_z*tube_qd_2) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
-    const real tube_nu_3 = tube_W_2_in_axes2_yz*v->tube_end_p3_in_axes2_z - tube_nu_3_t;
-    v->tube_w_1_t_17 = tube_w_1_t_17;
-    v->tube_w_1_t_21 = tube_w_1_t_21;
-    v->tube_w_1_t_25 = tube_w_1_t_25;
-    v->tube_w_1_t_33 = tube_w_1_t_33;
-    v->inv_tube_w_1_t_33 = inv_tube_w_1_t_33;
-    v->tube_w_1_t_34 = tube_w_1_t_34;
-    v->tube_w_1_t_35 = tube_w_1_t_35;
-    v->tube_w_1_t_36 = tube_w_1_t_36;
-    v->tube_w_1_t_37 = tube_w_1_t_37;
-    v->tube_w_1_t_41 = tube_w_1_t_41;
-    v->tube_w_1_t_45 = tube_w_1_t_45;
-    v->tube_w_1_t_49 = tube_w_1_t_49;
-    v->inv_tube_w_1_t_49 = inv_tube_w_1_t_49;
-    v->tube_w_1_t_50 = tube_w_1_t_50;
-    v->tube_w_1_t_51 = tube_w_1_t_51;
-    v->tube_w_1_t_52 = tube_w_1_t_52;
-    v->tube_w_1_t_53 = tube_w_1_t_53;
-    v->tube_w_1_t_58 = tube_w_1_t_58;
-    v->tube_w_1_t_63 = tube_w_1_t_63;
-    v->inv_tube_w_1_t_63 = inv_tube_w_1_t_63;
-    v->tube_w_1_t_64 = tube_w_1_t_64;
-    v->tube_w_1_t_65 = tube_w_1_t_65;
-    v->tube_w_1_t_66 = tube_w_1_t_66;
-    v->tube_w_1_t_67 = tube_w_1_t_67;
-    v->tube_w_1_t_68 = tube_w_1_t_68;
-    v->tube_w_1_t_69 = tube_w_1_t_69;
-    v->tube_w_1_t_75 = tube_w_1_t_75;
-    v->inv_tube_w_1_t_75 = inv_tube_w_1_t_75;
-    v->tube_qd_1_t = tube_qd_1_t;
-    v->tube_qd_1_t_2 = tube_qd_1_t_2;
-    v->tube_qd_1_t_3 = tube_qd_1_t_3;
-    v->tube_qd_1_t_4 = tube_qd_1_t_4;
-    v->tube_qd_1_t_5 = tube_qd_1_t_5;
-    v->tube_qd_2 = tube_qd_2;
-    v->tube_omega_1_in_axes2_x = tube_omega_1_in_axes2_x;
-    v->tube_omega_1_in_axes2_y = tube_omega_1_in_axes2_y;
-    v->tube_W_2_in_axes2_yz = tube_W_2_in_axes2_yz;
-    v->tube_W_2_in_axes2_xz = tube_W_2_in_axes2_xz;
-    v->tube_nu_1 = tube_nu_1;
-    v->tube_nu_2 = tube_nu_2;
-    v->tube_nu_3 = tube_nu_3;
-}
-
-INLINE void stage_tube_dynamics_required(values_tube *v)
-{
-    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real tube_Hk_a_1_x = v->axis_y_tube_axes2_z*v->tube_q_y -
-        v->axis_y_tube_axes2_y*v->tube_q_z + v->axis_x_tube_axes2_x*v->tube_mu_c1_in_axes2_x +
-        v->axis_y_tube_axes2_x*v->tube_mu_c1_in_axes2_y +
-        v->axis_z_tube_axes2_x*v->tube_mu_c1_in_axes2_z;
-    const real tube_Hk_a_1_y = v->axis_y_tube_axes2_x*v->tube_q_z -
-        v->axis_y_tube_axes2_z*v->tube_q_x + v->axis_x_tube_axes2_y*v->tube_mu_c1_in_axes2_x +
-        v->axis_y_tube_axes2_y*v->tube_mu_c1_in_axes2_y +
-        v->axis_z_tube_axes2_y*v->tube_mu_c1_in_axes2_z;
-    const real tube_Hk_a_1_z = v->axis_y_tube_axes2_y*v->tube_q_x -
-        v->axis_y_tube_axes2_x*v->tube_q_y + v->axis_x_tube_axes2_z*v->tube_mu_c1_in_axes2_x +
-        v->axis_y_tube_axes2_z*v->tube_mu_c1_in_axes2_y +
-        v->axis_z_tube_axes2_z*v->tube_mu_c1_in_axes2_z;
-    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-    const real tube_Hk_a_2_x = v->axis_z_tube_axes2_z*v->tube_q_y -
-        v->axis_z_tube_axes2_y*v->tube_q_z + v->axis_y_tube_axes2_x*v->tube_mu_c2_in_axes2_y +
-        v->axis_z_tube_axes2_x*v->tube_mu_c2_in_axes2_z -
-        v->axis_x_tube_axes2_x*v->tube_mu_c2_t;
-    const real tube_Hk_a_2_y = v->axis_z_tube_axes2_x*v->tube_q_z -
-        v->axis_z_tube_axes2_z*v->tube_q_x + v->axis_y_tube_axes2_y*v->tube_mu_c2_in_axes2_y +
-        v->axis_z_tube_axes2_y*v->tube_mu_c2_in_axes2_z -
-        v->axis_x_tube_axes2_y*v->tube_mu_c2_t;
-    const real tube_Hk_a_2_z = v->axis_z_tube_axes2_y*v->tube_q_x -
-        v->axis_z_tube_axes2_x*v->tube_q_y + v->axis_y_tube_axes2_z*v->tube_mu_c2_in_axes2_y +
-        v->axis_z_tube_axes2_z*v->tube_mu_c2_in_axes2_z -
-        v->axis_x_tube_axes2_z*v->tube_mu_c2_t;
-    v->tube_Hk_a_1_x = tube_Hk_a_1_x;
-    v->tube_Hk_a_1_y = tube_Hk_a_1_y;
-    v->tube_Hk_a_1_z = tube_Hk_a_1_z;
-    v->tube_Hk_a_2_x = tube_Hk_a_2_x;
-    v->tube_Hk_a_2_y = tube_Hk_a_2_y;
-    v->tube_Hk_a_2_z = tube_Hk_a_2_z;
-}
-
-INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v)
-{
-    /* (tube-qd_1) rate of joint 1 */
-    const real tube_qd_1_t = v->inv_tube_w_1_t_75*v->tube_w_1_t_70;
-    const real tube_qd_1_t_2 = v->inv_tube_w_1_t_75*v->tube_w_1_t_71;
-    const real tube_qd_1_t_3 = v->inv_tube_w_1_t_75*v->tube_w_1_t_72;
-    const real tube_qd_1_t_4 = v->inv_tube_w_1_t_75*v->tube_w_1_t_73;
-    const real tube_qd_1_t_5 = v->inv_tube_w_1_t_75*v->tube_w_1_t_74;
-    const real tube_qd_1 = v->inv_tube_w_1_t_75*(v->tube_S_dot_in_axes2_y*tube_qd_1_t +
-        v->tube_S_dot_in_axes2_z*tube_qd_1_t_2 + tube_qd_1_t_3*v->tube_qd_1_t_6 +
-        tube_qd_1_t_5*v->tube_qd_1_t_8 - tube_qd_1_t_4*v->tube_qd_1_t_7);
-    /* (tube-qd_2) rate of joint 2 */
-    const real tube_qd_2_t = v->inv_tube_w_1_t_63*(v->tube_S_dot_in_axes2_y*v->tube_w_1_t_64 +
-        v->tube_S_dot_in_axes2_z*v->tube_w_1_t_65 + v->tube_qd_1_t_6*v->tube_w_1_t_66 +
-        v->tube_qd_1_t_7*v->tube_w_1_t_67 + v->tube_qd_1_t_8*v->tube_w_1_t_68 -
-        tube_qd_1*v->tube_w_1_t_69);
-    const real tube_qd_2_t_2 =
-        v->inv_tube_w_1_t_49*(v->inv_tube_w_1_t_49*v->tube_S_dot_in_axes2_z +
-        v->tube_S_dot_in_axes2_y*v->tube_w_1_t_50 + v->tube_qd_1_t_6*v->tube_w_1_t_51 +
-        v->tube_qd_1_t_8*v->tube_w_1_t_52 + tube_qd_1*v->tube_w_1_t_58 +
-        tube_qd_2_t*v->tube_w_1_t_53);
-    const real tube_qd_2_t_3 = v->tube_S_dot_in_axes2_y*v->tube_w_1_t_14 +
-        v->tube_qd_1_t_6*v->tube_w_1_t_15 + v->tube_qd_1_t_8*v->tube_w_1_t_16 -
-        tube_qd_1*v->tube_w_1_t_29 - tube_qd_2_t*v->tube_w_1_t_25 +
-        tube_qd_2_t_2*v->tube_w_1_t_21 +
-        v->inv_tube_w_1_t_33*v->tube_w_1_t_17*(v->tube_S_dot_in_axes2_y*v->tube_w_1_t_34 +
-        v->tube_qd_1_t_6*v->tube_w_1_t_35 + v->tube_qd_1_t_8*v->tube_w_1_t_36 +
-        tube_qd_1*v->tube_w_1_t_45 + tube_qd_2_t*v->tube_w_1_t_41 -
-        tube_qd_2_t_2*v->tube_w_1_t_37);
-    const real tube_qd_2 = v->inv_tube_w_1_t_13*tube_qd_2_t_3;
-    /* (tube-omega_1) angular velocity of link 1 */
-    const real tube_omega_1_in_axes2_x = v->tube_e_1_in_axes2_x*tube_qd_1;
-    const real tube_omega_1_in_axes2_y = -v->tube_c_2*tube_qd_1;
-    /* (tube-W_2) centripetal tensor of link 2 */
-    const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
-    const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
-    const real tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
-    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-    const real tube_bias_t = tube_W_2_in_axes2_xz*v->tube_q_3;
-    const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*v->tube_q_3;
-    const real tube_bias_t_4 = v->tube_bias_t_3*tube_qd_2;
-    const real tube_bias_t_5 = v->tube_bias_t_3*tube_omega_1_in_axes2_y;
-    const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
-    const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
+    const real B_p_xy = s[9*w + j];
+    const real B_p_xz = s[10*w + j];
+    const real W_p_t_4 = s[11*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real tube_S_ddot_x = t_ddot_x + B_p_xy*v->tube_q_y + B_p_xz*v->tube_q_z -
+        W_p_t_4*v->tube_q_x;
+    const real B_p_yx = s[12*w + j];
+    const real B_p_yz = s[13*w + j];
+    const real W_p_t_5 = s[14*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real tube_S_ddot_y = t_ddot_y + B_p_yx*v->tube_q_x + B_p_yz*v->tube_q_z -
+        W_p_t_5*v->tube_q_y;
+    const real B_p_zx = s[15*w + j];
+    const real B_p_zy = s[16*w + j];
+    const real W_p_t_6 = s[17*w + j];
+    const real t_ddot_z = A[2*w + j];
+    const real tube_S_ddot_z = t_ddot_z + B_p_zx*v->tube_q_x + B_p_zy*v->tube_q_y -
+        W_p_t_6*v->tube_q_z;
+    v->tube_S_ddot_in_axes2_x = v->axis_x_tube_axes2_x*tube_S_ddot_x +
+        v->axis_x_tube_axes2_y*tube_S_ddot_y + v->axis_x_tube_axes2_z*tube_S_ddot_z;
     /* (tube-rel) acceleration of the connection point left to the joint accelerations */
-    const real tube_rel_in_axes2_y = v->axis_y_tube_axes2_x*v->tube_S_ddot_x +
-        v->axis_y_tube_axes2_y*v->tube_S_ddot_y + v->axis_y_tube_axes2_z*v->tube_S_ddot_z -
-        tube_bias_in_axes2_y;
-    const real tube_rel_in_axes2_z = v->axis_z_tube_axes2_x*v->tube_S_ddot_x +
-        v->axis_z_tube_axes2_y*v->tube_S_ddot_y + v->axis_z_tube_axes2_z*v->tube_S_ddot_z -
-        tube_bias_in_axes2_z;
-    /* (tube-nd_m1) rate of moment direction 1 */
-    const real tube_nd_m1_in_axes2_y = v->tube_end_p1_in_axes2_x*v->tube_omega_in_axes2_y -
-        v->tube_n_m1_in_axes2_z*v->tube_omega_in_axes2_x -
-        v->tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y;
-    const real tube_nd_m1_in_axes2_z = v->tube_end_p1_in_axes2_x*v->tube_omega_in_axes2_z -
-        v->tube_end_p1_in_axes2_z*v->tube_omega_in_axes2_x -
-        v->tube_end_p1_in_axes2_x*tube_qd_2;
-    /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real tube_nu_1_t = tube_omega_1_in_axes2_x - v->tube_omega_in_axes2_x;
-    const real tube_nu_1_t_2 = v->tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
-    const real tube_nu_1_t_3 = v->tube_omega_in_axes2_z - tube_qd_2;
-    const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
-        tube_nu_1_t*(v->tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y +
-        v->tube_end_p1_in_axes2_z*tube_qd_2);
-    const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v->tube_end_p1_in_axes2_z;
-    /* (tube-nd_m2) rate of moment direction 2 */
-    const real tube_nd_m2_in_axes2_x = v->tube_end_p2_in_axes2_z*v->tube_omega_in_axes2_x -
-        v->tube_n_m2_in_axes2_y*v->tube_omega_in_axes2_z -
-        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x;
-    const real tube_nd_m2_in_axes2_y = v->tube_end_p2_in_axes2_z*v->tube_omega_in_axes2_y -
-        v->tube_end_p2_in_axes2_y*v->tube_omega_in_axes2_z -
-        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
-    /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-    const real tube_nu_2_t = -tube_W_2_in_axes2_xz*v->tube_n_m2_in_axes2_y -
-        tube_W_2_in_axes2_yz*v->tube_end_p2_in_axes2_y;
-    const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
-        tube_nd_m2_in_axes2_x*tube_nu_1_t -
-        tube_nu_1_t_3*(-v->tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-        v->tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
-    const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
-    /* (tube-nd_m3) rate of moment direction 3 */
-    const real tube_nd_m3_in_axes2_x = v->tube_n_m3_in_axes2_z*v->tube_omega_in_axes2_y -
-        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_x +
-        v->tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x;
-    const real tube_nd_m3_in_axes2_z = v->tube_end_p3_in_axes2_z*v->tube_omega_in_axes2_y -
-        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_z +
-        v->tube_end_p3_in_axes2_y*tube_qd_2;
-    /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-    const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-        tube_nu_1_t_2*(v->tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x +
-        v->tube_end_p3_in_axes2_z*tube_qd_2) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
-    const real tube_nu_3 = tube_W_2_in_axes2_yz*v->tube_end_p3_in_axes2_z - tube_nu_3_t;
+    const real tube_rel_in_axes2_y = v->axis_y_tube_axes2_x*tube_S_ddot_x +
+        v->axis_y_tube_axes2_y*tube_S_ddot_y + v->axis_y_tube_axes2_z*tube_S_ddot_z -
+        v->tube_bias_in_axes2_y;
+    const real tube_rel_in_axes2_z = v->axis_z_tube_axes2_x*tube_S_ddot_x +
+        v->axis_z_tube_axes2_y*tube_S_ddot_y + v->axis_z_tube_axes2_z*tube_S_ddot_z -
+        v->tube_bias_in_axes2_z;
     /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real tube_etad_1 = tube_nu_1 - v->tube_etad_1_t;
+    const real tube_etad_1 = v->tube_nu_1 - v->tube_etad_1_t;
     /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
-    const real tube_etad_2 = tube_nu_2 - v->tube_etad_2_t;
+    const real tube_etad_2 = v->tube_nu_2 - v->tube_etad_2_t;
     /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
-    const real tube_etad_3 = tube_nu_3 - v->tube_etad_3_t;
+    const real tube_etad_3 = v->tube_nu_3 - v->tube_etad_3_t;
     /* (tube-qdd_1) acceleration of joint 1 */
     const real tube_qdd_1_t = R(1.35)*tube_etad_1;
     const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
     const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
-    const real tube_qdd_1 = v->inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y +
-        tube_qd_1_t_2*tube_rel_in_axes2_z - tube_qd_1_t_4*tube_qdd_1_t_2 +
-        tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_5*tube_qdd_1_t_3);
+    v->tube_qdd_1 = v->inv_tube_w_1_t_75*(tube_rel_in_axes2_y*v->tube_w_1_t_76 +
+        tube_rel_in_axes2_z*v->tube_w_1_t_77 - v->tube_m2_w_1_t*tube_qdd_1_t_2 +
+        v->tube_m1_w_1_t*tube_qdd_1_t + v->tube_m3_w_1_t*tube_qdd_1_t_3);
     /* (tube-qdd_2) acceleration of joint 2 */
     const real tube_qdd_2_t = v->inv_tube_w_1_t_63*(tube_rel_in_axes2_y*v->tube_w_1_t_64 +
         tube_qdd_1_t_2*v->tube_w_1_t_67 + tube_rel_in_axes2_z*v->tube_w_1_t_65 +
         tube_qdd_1_t*v->tube_w_1_t_66 + tube_qdd_1_t_3*v->tube_w_1_t_68 -
-        tube_qdd_1*v->tube_w_1_t_69);
+        v->tube_qdd_1*v->tube_w_1_t_69);
     const real tube_qdd_2_t_2 = v->inv_tube_w_1_t_49*(tube_rel_in_axes2_y*v->tube_w_1_t_50 +
         v->inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1_t*v->tube_w_1_t_51 +
-        tube_qdd_1_t_3*v->tube_w_1_t_52 + tube_qdd_1*v->tube_w_1_t_58 +
+        tube_qdd_1_t_3*v->tube_w_1_t_52 + v->tube_qdd_1*v->tube_w_1_t_58 +
         tube_qdd_2_t*v->tube_w_1_t_53);
     const real tube_qdd_2_t_3 = tube_rel_in_axes2_y*v->tube_w_1_t_14 +
         tube_qdd_1_t*v->tube_w_1_t_15 + tube_qdd_1_t_3*v->tube_w_1_t_16 -
-        tube_qdd_1*v->tube_w_1_t_29 - tube_qdd_2_t*v->tube_w_1_t_25 +
+        v->tube_qdd_1*v->tube_w_1_t_29 - tube_qdd_2_t*v->tube_w_1_t_25 +
         tube_qdd_2_t_2*v->tube_w_1_t_21 +
         v->inv_tube_w_1_t_33*v->tube_w_1_t_17*(tube_rel_in_axes2_y*v->tube_w_1_t_34 +
         tube_qdd_1_t*v->tube_w_1_t_35 + tube_qdd_1_t_3*v->tube_w_1_t_36 +
-        tube_qdd_1*v->tube_w_1_t_45 + tube_qdd_2_t*v->tube_w_1_t_41 -
+        v->tube_qdd_1*v->tube_w_1_t_45 + tube_qdd_2_t*v->tube_w_1_t_41 -
         tube_qdd_2_t_2*v->tube_w_1_t_37);
-    const real tube_qdd_2 = v->inv_tube_w_1_t_13*tube_qdd_2_t_3;
-    /* (tube-alpha_1) angular acceleration of link 1 */
-    const real tube_alpha_1_in_axes2_x = v->tube_e_1_in_axes2_x*tube_qdd_1;
-    const real tube_alpha_1_in_axes2_y = -v->tube_c_2*tube_qdd_1;
-    /* (tube-alpha_2) angular acceleration of link 2 */
-    const real tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x;
-    const real tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz;
-    /* (tube-B_2) acceleration tensor of link 2 */
-    const real tube_B_2_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2;
-    const real tube_B_2_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2;
-    const real tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y;
-    const real tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x;
-    /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real tube_acc_3_t_4 = m->tube_acc_3_t[i]*v->tube_c_1 +
-        m->tube_acc_3_t_2[i]*v->tube_s_1;
-    const real tube_g_in_axes2_x = m->tube_acc_3_t_3[i]*v->tube_e_1_in_axes2_x +
-        tube_acc_3_t_4*v->tube_c_2;
-    const real tube_g_in_axes2_y = tube_acc_3_t_4*v->tube_e_1_in_axes2_x -
-        m->tube_acc_3_t_3[i]*v->tube_c_2;
-    const real tube_acc_3_in_axes2_x = v->axis_x_tube_axes2_x*v->tube_S_ddot_x -
-        tube_g_in_axes2_x + v->axis_x_tube_axes2_y*v->tube_S_ddot_y +
-        v->axis_x_tube_axes2_z*v->tube_S_ddot_z;
-    const real tube_acc_3_in_axes2_y = tube_bias_t_4 - tube_g_in_axes2_y - tube_bias_t_2 +
-        v->tube_q_3*tube_qdd_2;
-    const real tube_acc_3_in_axes2_z = tube_bias_t - v->tube_g_in_axes2_z - tube_bias_t_5 -
-        tube_alpha_2_in_axes2_y*v->tube_q_3;
-    /* (tube-f_3) inertia force of link 3 less its weight */
-    const real tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
-    const real tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
-    const real tube_f_3_t_3 = tube_qd_2*tube_qd_2;
-    const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*m->tube_link3_mass[i] -
-        m->tube_h_3_in_spec2_x[i]*(tube_f_3_t_2 + tube_f_3_t_3) +
-        tube_alpha_1_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
-        tube_B_2_in_axes2_xy*m->tube_h_3_in_spec2_z[i];
-    const real tube_f_3_in_axes2_y = m->tube_h_3_in_spec2_z[i]*(tube_f_3_t + tube_f_3_t_3) -
-        tube_alpha_1_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
-        tube_B_2_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
-        tube_acc_3_in_axes2_y*m->tube_link3_mass[i];
-    const real tube_f_3_in_axes2_z = tube_B_2_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
-        m->tube_h_3_in_spec2_y[i]*(tube_f_3_t + tube_f_3_t_2) +
-        tube_acc_3_in_axes2_z*m->tube_link3_mass[i] -
-        tube_B_2_in_axes2_zy*m->tube_h_3_in_spec2_z[i];
-    /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real tube_mu_2_in_axes2_x = v->tube_g_in_axes2_z*m->tube_h_2_in_spec2_z[i] +
-        tube_g_in_axes2_y*m->tube_h_2_in_spec2_y[i] +
-        m->tube_J_group_2_in_axes2_yz[i]*(tube_f_3_t_2 - tube_f_3_t_3) +
-        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_in_axes2_x +
-        tube_B_2_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] -
-        tube_B_2_in_axes2_zx*m->tube_J_group_2_in_axes2_xy[i] -
-        tube_acc_3_in_axes2_z*m->tube_h_3_in_spec2_z[i] +
-        tube_B_2_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] -
-        tube_acc_3_in_axes2_y*m->tube_h_3_in_spec2_y[i];
-    const real tube_mu_2_in_axes2_y = v->tube_g_in_axes2_z*m->tube_h_2_in_spec2_x[i] -
-        tube_g_in_axes2_x*m->tube_h_2_in_spec2_y[i] +
-        tube_acc_3_in_axes2_x*m->tube_h_3_in_spec2_y[i] -
-        m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_t - tube_f_3_t_3) +
-        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_in_axes2_y +
-        tube_B_2_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] -
-        tube_B_2_in_axes2_zx*m->tube_Sigma_2_in_axes2_xx[i] -
-        tube_acc_3_in_axes2_z*m->tube_h_3_in_spec2_x[i] -
-        tube_B_2_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i];
-    const real tube_mu_2_in_axes2_z = tube_acc_3_in_axes2_x*m->tube_h_3_in_spec2_z[i] -
-        tube_g_in_axes2_x*m->tube_h_2_in_spec2_z[i] -
-        tube_g_in_axes2_y*m->tube_h_2_in_spec2_x[i] +
-        m->tube_J_group_2_in_axes2_xy[i]*(tube_f_3_t - tube_f_3_t_2) +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_in_axes2_x +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_in_axes2_y +
-        tube_B_2_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i] +
-        tube_acc_3_in_axes2_y*m->tube_h_3_in_spec2_x[i] -
-        tube_B_2_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i];
-    /* (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
-       left out */
-    const real tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*v->tube_q_3;
-    const real tube_N_2_in_axes2_z = tube_f_3_in_axes2_y*v->tube_q_3 + tube_mu_2_in_axes2_z;
-    /* (tube-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
-    const real tube_G_t = v->inv_tube_w_1_t_13*tube_N_2_in_axes2_z;
-    const real tube_G_t_2 = v->inv_tube_w_1_t_33*tube_G_t*v->tube_w_1_t_17;
-    const real tube_G_t_3 = v->inv_tube_w_1_t_49*(tube_G_t*v->tube_w_1_t_21 -
-        tube_G_t_2*v->tube_w_1_t_37);
-    const real tube_G_t_4 = v->inv_tube_w_1_t_63*(tube_G_t_2*v->tube_w_1_t_41 -
-        tube_G_t*v->tube_w_1_t_25 + tube_G_t_3*v->tube_w_1_t_53);
-    const real tube_G_t_5 = v->inv_tube_w_1_t_75*(tube_N_2_in_axes2_y*v->tube_c_2 -
-        v->tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x + tube_G_t*v->tube_w_1_t_29 -
-        tube_G_t_2*v->tube_w_1_t_45 - tube_G_t_3*v->tube_w_1_t_58 +
-        tube_G_t_4*v->tube_w_1_t_69);
-    const real tube_G_in_axes2_y = tube_G_t*v->tube_w_1_t_14 + tube_G_t_2*v->tube_w_1_t_34 +
-        tube_G_t_3*v->tube_w_1_t_50 + tube_G_t_4*v->tube_w_1_t_64 - tube_G_t_5*tube_qd_1_t;
-    const real tube_G_in_axes2_z = v->inv_tube_w_1_t_49*tube_G_t_3 +
-        tube_G_t_4*v->tube_w_1_t_65 - tube_G_t_5*tube_qd_1_t_2;
-    /* (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
-       all degrees of freedom */
-    const real tube_G_m1_t = tube_G_t*v->tube_w_1_t_15 + tube_G_t_2*v->tube_w_1_t_35 +
-        tube_G_t_3*v->tube_w_1_t_51 + tube_G_t_4*v->tube_w_1_t_66 - tube_G_t_5*tube_qd_1_t_3;
-    const real tube_G_m1 = R(1.35)*tube_G_m1_t;
-    /* (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
-       all degrees of freedom */
-    const real tube_G_m2_t = tube_G_t_4*v->tube_w_1_t_67 + tube_G_t_5*tube_qd_1_t_4;
-    const real tube_G_m2 = R(1.35)*tube_G_m2_t;
-    /* (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along
-       all degrees of freedom */
-    const real tube_G_m3_t = tube_G_t*v->tube_w_1_t_16 + tube_G_t_2*v->tube_w_1_t_36 +
-        tube_G_t_3*v->tube_w_1_t_52 + tube_G_t_4*v->tube_w_1_t_68 - tube_G_t_5*tube_qd_1_t_5;
-    const real tube_G_m3 = R(1.35)*tube_G_m3_t;
-    /* (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
-    const real tube_G_m_in_axes2_x = -tube_G_m2*v->tube_end_p2_in_axes2_y -
-        tube_G_m3*v->tube_end_p3_in_axes2_z;
-    const real tube_G_m_in_axes2_y = tube_G_m2*v->tube_n_m2_in_axes2_y -
-        tube_G_m1*v->tube_end_p1_in_axes2_z;
-    const real tube_G_m_in_axes2_z = tube_G_m1*v->tube_n_m1_in_axes2_z +
-        tube_G_m3*v->tube_n_m3_in_axes2_z;
-    /* (tube-c) leg force on the platform without actuation and without the mass at the connection
-       point */
-    const real tube_c_x = -v->axis_x_tube_axes2_x*tube_f_3_in_axes2_x -
-        v->axis_y_tube_axes2_x*tube_G_in_axes2_y - v->axis_z_tube_axes2_x*tube_G_in_axes2_z;
-    const real tube_c_y = -v->axis_x_tube_axes2_y*tube_f_3_in_axes2_x -
-        v->axis_y_tube_axes2_y*tube_G_in_axes2_y - v->axis_z_tube_axes2_y*tube_G_in_axes2_z;
-    const real tube_c_z = -v->axis_x_tube_axes2_z*tube_f_3_in_axes2_x -
-        v->axis_y_tube_axes2_z*tube_G_in_axes2_y - v->axis_z_tube_axes2_z*tube_G_in_axes2_z;
-    v->tube_G_m_in_axes2_x = tube_G_m_in_axes2_x;
-    v->tube_G_m_in_axes2_y = tube_G_m_in_axes2_y;
-    v->tube_G_m_in_axes2_z = tube_G_m_in_axes2_z;
-    v->tube_c_x = tube_c_x;
-    v->tube_c_y = tube_c_y;
-    v->tube_c_z = tube_c_z;
+    v->tube_qdd_2 = v->inv_tube_w_1_t_13*tube_qdd_2_t_3;
 }
 
-typedef struct {
-    real ups_q_x, ups_q_y, ups_q_z, ups_S_in_turn1_z, ups_root_1_t, ups_root_1, inv_ups_root_1,
-        ups_c_1, ups_s_1, ups_q_3_t, ups_q_3, inv_ups_q_3, ups_c_2, axis_x_ups_axes2_x,
-        axis_x_ups_axes2_y, axis_x_ups_axes2_z, axis_z_ups_axes2_x, axis_z_ups_axes2_y,
-        axis_z_ups_axes2_z, axis_y_ups_axes2_x, axis_y_ups_axes2_y, axis_y_ups_axes2_z,
-        ups_e_1_in_axes2_x, ups_g_in_axes2_z, ups_w_2_in_axes2_y, ups_w_3_x, ups_w_3_y, ups_w_3_z,
-        ups_a_p_x, ups_a_p_y, ups_a_p_z, ups_S_dot_t, ups_S_dot_t_2, ups_S_dot_t_3, ups_qd_1,
-        ups_qd_2, ups_omega_1_in_axes2_x, ups_omega_1_in_axes2_y, ups_W_2_in_axes2_yz,
-        ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xy, ups_bias_t, ups_bias_in_axes2_z, ups_S_ddot_x,
-        ups_S_ddot_y, ups_S_ddot_z, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
-        ups_S_in_turn1_x, ups_S_in_turn1_y, ups_alpha_1_in_axes2_x, ups_alpha_1_in_axes2_y,
-        ups_B_2_in_axes2_yx, ups_B_2_in_axes2_xy, ups_B_2_in_axes2_zx, ups_B_2_in_axes2_zy,
-        ups_g_in_axes2_x, ups_g_in_axes2_y, ups_acc_3_in_axes2_x, ups_acc_3_in_axes2_y,
-        ups_acc_3_in_axes2_z, ups_mu_2_t;
-} values_ups;
-
-INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
-    *X, values_ups *v)
+INLINE void stage_tube_M_dynamics(const prepared *m, size_t i, values_tube *v)
 {
-    /* (ups-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real ups_q_x = R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] +
-        R_xx*m->ups_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yz*m->ups_platform_point_z[i] +
-        R_yy*m->ups_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real ups_q_z = R_zx*m->ups_platform_point_x[i] + R_zy*m->ups_platform_point_y[i] +
-        R_zz*m->ups_platform_point_z[i];
-    const real t_x = X[0*w + j];
-    const real ups_S_x = t_x - m->ups_base_point_x[i] + ups_q_x;
-    const real t_y = X[1*w + j];
-    const real ups_S_y = t_y - m->ups_base_point_y[i] + ups_q_y;
-    const real t_z = X[2*w + j];
-    const real ups_S_z = t_z - m->ups_base_point_z[i] + ups_q_z;
-    const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
-        ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
-    const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
-        ups_S_y*m->ups_base_frame_yy[i] + ups_S_z*m->ups_base_frame_zy[i];
-    const real ups_S_in_turn1_z = ups_S_x*m->ups_base_frame_xz[i] +
-        ups_S_y*m->ups_base_frame_yz[i] + ups_S_z*m->ups_base_frame_zz[i];
-    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
-        ups_S_in_turn1_y*ups_S_in_turn1_y;
-    const real ups_root_1 = m->ups_branch_1[i]*root(ups_root_1_t);
-    /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_ups_root_1 = 1/ups_root_1;
-    const real ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x;
-    /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-    const real ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y;
-    /* (ups-q_3) displacement of joint 3 */
-    const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
-    const real ups_q_3 = m->ups_branch_2[i]*root(ups_q_3_t);
-    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_ups_q_3 = 1/ups_q_3;
-    const real ups_c_2 = inv_ups_q_3*ups_root_1;
-    /* (ups-S_dot) velocity of the connection point */
-    const real axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x;
-    const real axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y;
-    const real axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z;
-    /* (ups-qd_1) rate of joint 1 */
-    const real axis_z_ups_axes2_x = m->ups_base_frame_xy[i]*ups_c_1 -
-        m->ups_base_frame_xx[i]*ups_s_1;
-    const real axis_z_ups_axes2_y = m->ups_base_frame_yy[i]*ups_c_1 -
-        m->ups_base_frame_yx[i]*ups_s_1;
-    const real axis_z_ups_axes2_z = m->ups_base_frame_zy[i]*ups_c_1 -
-        m->ups_base_frame_zx[i]*ups_s_1;
-    /* (ups-qd_2) rate of joint 2 */
-    const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-        axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-    const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-        axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-    const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-        axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-    /* (ups-omega_1) angular velocity of link 1 */
-    const real ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z;
-    /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real ups_g_in_axes2_z = m->ups_acc_3_t_2[i]*ups_c_1 - m->ups_acc_3_t[i]*ups_s_1;
-    /* (ups-w_2) reciprocal vector 2 */
-    const real ups_w_2_in_axes2_y = 1/ups_q_3;
-    /* (ups-w_3) reciprocal vector 3 */
-    const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
-    const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
-    const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
-    v->ups_q_x = ups_q_x;
-    v->ups_q_y = ups_q_y;
-    v->ups_q_z = ups_q_z;
-    v->ups_S_in_turn1_z = ups_S_in_turn1_z;
-    v->ups_root_1_t = ups_root_1_t;
-    v->ups_root_1 = ups_root_1;
-    v->inv_ups_root_1 = inv_ups_root_1;
-    v->ups_c_1 = ups_c_1;
-    v->ups_s_1 = ups_s_1;
-    v->ups_q_3_t = ups_q_3_t;
-    v->ups_q_3 = ups_q_3;
-    v->inv_ups_q_3 = inv_ups_q_3;
-    v->ups_c_2 = ups_c_2;
-    v->axis_x_ups_axes2_x = axis_x_ups_axes2_x;
-    v->axis_x_ups_axes2_y = axis_x_ups_axes2_y;
-    v->axis_x_ups_axes2_z = axis_x_ups_axes2_z;
-    v->axis_z_ups_axes2_x = axis_z_ups_axes2_x;
-    v->axis_z_ups_axes2_y = axis_z_ups_axes2_y;
-    v->axis_z_ups_axes2_z = axis_z_ups_axes2_z;
-    v->axis_y_ups_axes2_x = axis_y_ups_axes2_x;
-    v->axis_y_ups_axes2_y = axis_y_ups_axes2_y;
-    v->axis_y_ups_axes2_z = axis_y_ups_axes2_z;
-    v->ups_e_1_in_axes2_x = ups_e_1_in_axes2_x;
-    v->ups_g_in_axes2_z = ups_g_in_axes2_z;
-    v->ups_w_2_in_axes2_y = ups_w_2_in_axes2_y;
-    v->ups_w_3_x = ups_w_3_x;
-    v->ups_w_3_y = ups_w_3_y;
-    v->ups_w_3_z = ups_w_3_z;
-}
-
-INLINE void stage_ups_A_X(size_t w, size_t j, const real *A, values_ups *v)
-{
-    /* (ups-a_p) acceleration of the connection point without its centripetal part */
-    const real alpha_y = A[4*w + j];
-    const real alpha_z = A[5*w + j];
-    const real t_ddot_x = A[0*w + j];
-    const real ups_a_p_x = t_ddot_x + alpha_y*v->ups_q_z - alpha_z*v->ups_q_y;
-    const real alpha_x = A[3*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real ups_a_p_y = t_ddot_y + alpha_z*v->ups_q_x - alpha_x*v->ups_q_z;
-    const real t_ddot_z = A[2*w + j];
-    const real ups_a_p_z = t_ddot_z + alpha_x*v->ups_q_y - alpha_y*v->ups_q_x;
-    v->ups_a_p_x = ups_a_p_x;
-    v->ups_a_p_y = ups_a_p_y;
-    v->ups_a_p_z = ups_a_p_z;
-}
-
-INLINE void stage_ups_V_X(size_t w, size_t j, const real *V, values_ups *v)
-{
-    /* (ups-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real ups_S_dot_t = omega_y*v->ups_q_z - omega_z*v->ups_q_y;
-    const real omega_x = V[3*w + j];
-    const real ups_S_dot_t_2 = omega_z*v->ups_q_x - omega_x*v->ups_q_z;
-    const real ups_S_dot_t_3 = omega_x*v->ups_q_y - omega_y*v->ups_q_x;
-    const real t_dot_x = V[0*w + j];
-    const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
-    const real t_dot_y = V[1*w + j];
-    const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
-    const real t_dot_z = V[2*w + j];
-    const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-    const real ups_S_dot_in_axes2_x = v->axis_x_ups_axes2_x*ups_S_dot_x +
-        v->axis_x_ups_axes2_y*ups_S_dot_y + v->axis_x_ups_axes2_z*ups_S_dot_z;
-    /* (ups-qd_1) rate of joint 1 */
-    const real ups_qd_1 = v->inv_ups_root_1*(v->axis_z_ups_axes2_x*ups_S_dot_x +
-        v->axis_z_ups_axes2_y*ups_S_dot_y + v->axis_z_ups_axes2_z*ups_S_dot_z);
-    /* (ups-qd_2) rate of joint 2 */
-    const real ups_qd_2 = v->inv_ups_q_3*(v->axis_y_ups_axes2_x*ups_S_dot_x +
-        v->axis_y_ups_axes2_y*ups_S_dot_y + v->axis_y_ups_axes2_z*ups_S_dot_z);
-    /* (ups-omega_1) angular velocity of link 1 */
-    const real ups_omega_1_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qd_1;
-    const real ups_omega_1_in_axes2_y = -v->ups_c_2*ups_qd_1;
-    /* (ups-W_2) centripetal tensor of link 2 */
-    const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-    const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-    const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-    /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-    const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-    const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*v->ups_q_3 -
-        ups_bias_t*ups_omega_1_in_axes2_y;
-    v->ups_S_dot_t = ups_S_dot_t;
-    v->ups_S_dot_t_2 = ups_S_dot_t_2;
-    v->ups_S_dot_t_3 = ups_S_dot_t_3;
-    v->ups_qd_1 = ups_qd_1;
-    v->ups_qd_2 = ups_qd_2;
-    v->ups_omega_1_in_axes2_x = ups_omega_1_in_axes2_x;
-    v->ups_omega_1_in_axes2_y = ups_omega_1_in_axes2_y;
-    v->ups_W_2_in_axes2_yz = ups_W_2_in_axes2_yz;
-    v->ups_W_2_in_axes2_xz = ups_W_2_in_axes2_xz;
-    v->ups_W_2_in_axes2_xy = ups_W_2_in_axes2_xy;
-    v->ups_bias_t = ups_bias_t;
-    v->ups_bias_in_axes2_z = ups_bias_in_axes2_z;
-}
-
-INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *V, values_ups *v)
-{
-    /* (ups-S_ddot) acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real ups_S_ddot_x = omega_y*v->ups_S_dot_t_3 - omega_z*v->ups_S_dot_t_2 +
-        v->ups_a_p_x;
-    const real omega_x = V[3*w + j];
-    const real ups_S_ddot_y = omega_z*v->ups_S_dot_t - omega_x*v->ups_S_dot_t_3 +
-        v->ups_a_p_y;
-    const real ups_S_ddot_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t +
-        v->ups_a_p_z;
-    v->ups_S_ddot_x = ups_S_ddot_x;
-    v->ups_S_ddot_y = ups_S_ddot_y;
-    v->ups_S_ddot_z = ups_S_ddot_z;
-}
-
-INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_ups *v)
-{
-    /* (ups-u_1) centripetal acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real ups_u_1_x = omega_y*v->ups_S_dot_t_3 - omega_z*v->ups_S_dot_t_2;
-    const real omega_x = V[3*w + j];
-    const real ups_u_1_y = omega_z*v->ups_S_dot_t - omega_x*v->ups_S_dot_t_3;
-    const real ups_u_1_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t;
-    const real ups_u_1_in_axes2_z = v->axis_z_ups_axes2_x*ups_u_1_x +
-        v->axis_z_ups_axes2_y*ups_u_1_y + v->axis_z_ups_axes2_z*ups_u_1_z;
-    /* (ups-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_bias_in_axes2_z;
-    /* (ups-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real ups_qdd_1_o = v->inv_ups_root_1*ups_rel_o_in_axes2_z;
-    /* (ups-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real ups_alpha_1_o_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1_o;
-    const real ups_alpha_1_o_in_axes2_y = -v->ups_c_2*ups_qdd_1_o;
-    /* (ups-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real ups_alpha_2_o_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
-    const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
-    /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real ups_B_2_o_t = v->axis_y_ups_axes2_x*ups_u_1_x;
-    const real ups_B_2_o_t_2 = v->axis_y_ups_axes2_y*ups_u_1_y;
-    const real ups_B_2_o_t_3 = v->axis_y_ups_axes2_z*ups_u_1_z;
-    const real ups_B_2_o_in_axes2_yx = v->inv_ups_q_3*(ups_B_2_o_t + ups_B_2_o_t_2 +
-        ups_B_2_o_t_3 - v->ups_bias_t*v->ups_qd_2);
-    const real ups_B_2_o_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
-    const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
-    const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
-    /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real ups_acc_3_o_t = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
-    const real ups_g_in_axes2_x = ups_acc_3_o_t*v->ups_c_2 +
-        m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x;
-    const real ups_g_in_axes2_y = ups_acc_3_o_t*v->ups_e_1_in_axes2_x -
-        m->ups_acc_3_t_3[i]*v->ups_c_2;
-    const real ups_acc_3_o_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
-        v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
-    const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t - ups_g_in_axes2_y + ups_B_2_o_t_2 +
-        ups_B_2_o_t_3;
-    const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_g_in_axes2_z;
-    /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
-       */
-    const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
-    const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
-    const real ups_phi_3_o_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t -
-        ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
-        ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i];
-    /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
-    const real ups_mu_2_o_in_axes2_x = v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
-        ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
-        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
-        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_x +
-        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
-    const real ups_mu_2_o_in_axes2_y = v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
-        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
-        ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_mu_2_o_in_axes2_z = ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
-        ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] - ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i]
-        + ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
-        ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) -
-        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
-        m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y;
-    /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2) -
-        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z;
-    const real ups_c_o_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) +
-        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
-        v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
-        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x);
-    /* (ups-U) velocity and gravity terms of the leg force */
-    const real ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
-        v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
-    const real ups_U_y = v->axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
-        v->axis_y_ups_axes2_y*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
-    const real ups_U_z = v->axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
-        v->axis_y_ups_axes2_z*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
-    /* (Z_a) rotational part of Z */
-    const real ups_Z_a_t = ups_U_z*v->ups_q_y - ups_U_y*v->ups_q_z;
-    const real ups_Z_a_t_2 = ups_U_x*v->ups_q_z - ups_U_z*v->ups_q_x;
-    const real ups_Z_a_t_3 = ups_U_y*v->ups_q_x - ups_U_x*v->ups_q_y;
-    v->ups_U_x = ups_U_x;
-    v->ups_U_y = ups_U_y;
-    v->ups_U_z = ups_U_z;
-    v->ups_Z_a_t = ups_Z_a_t;
-    v->ups_Z_a_t_2 = ups_Z_a_t_2;
-    v->ups_Z_a_t_3 = ups_Z_a_t_3;
-}
-
-INLINE void stage_ups_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_ups *v)
-{
-    /* (ups-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real ups_S_x = t_x - m->ups_base_point_x[i] + R_xy*m->ups_platform_point_y[i] +
-        R_xz*m->ups_platform_point_z[i] + R_xx*m->ups_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real ups_S_y = t_y - m->ups_base_point_y[i] + R_yx*m->ups_platform_point_x[i] +
-        R_yz*m->ups_platform_point_z[i] + R_yy*m->ups_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real ups_S_z = t_z - m->ups_base_point_z[i] + R_zx*m->ups_platform_point_x[i] +
-        R_zy*m->ups_platform_point_y[i] + R_zz*m->ups_platform_point_z[i];
-    const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
-        ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
-    const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
-        ups_S_y*m->ups_base_frame_yy[i] + ups_S_z*m->ups_base_frame_zy[i];
-    const real ups_S_in_turn1_z = ups_S_x*m->ups_base_frame_xz[i] +
-        ups_S_y*m->ups_base_frame_yz[i] + ups_S_z*m->ups_base_frame_zz[i];
-    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
-        ups_S_in_turn1_y*ups_S_in_turn1_y;
-    const real ups_root_1 = m->ups_branch_1[i]*root(ups_root_1_t);
-    /* (ups-q_1) displacement of joint 1 */
-    const real inv_ups_root_1 = 1/ups_root_1;
-    /* (ups-q_3) displacement of joint 3 */
-    const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
-    const real ups_q_3 = m->ups_branch_2[i]*root(ups_q_3_t);
-    /* (ups-q_2) displacement of joint 2 */
-    const real inv_ups_q_3 = 1/ups_q_3;
-    v->ups_S_in_turn1_x = ups_S_in_turn1_x;
-    v->ups_S_in_turn1_y = ups_S_in_turn1_y;
-    v->ups_S_in_turn1_z = ups_S_in_turn1_z;
-    v->ups_root_1_t = ups_root_1_t;
-    v->ups_root_1 = ups_root_1;
-    v->inv_ups_root_1 = inv_ups_root_1;
-    v->ups_q_3_t = ups_q_3_t;
-    v->ups_q_3 = ups_q_3;
-    v->inv_ups_q_3 = inv_ups_q_3;
-}
-
-INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
-{
-    /* (ups-S_ddot) acceleration of the connection point */
-    const real ups_S_ddot_in_axes2_z = v->axis_z_ups_axes2_x*v->ups_S_ddot_x +
-        v->axis_z_ups_axes2_y*v->ups_S_ddot_y + v->axis_z_ups_axes2_z*v->ups_S_ddot_z;
-    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-    const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_bias_in_axes2_z;
-    /* (ups-qdd_1) acceleration of joint 1 */
-    const real ups_qdd_1 = v->inv_ups_root_1*ups_rel_in_axes2_z;
-    /* (ups-alpha_1) angular acceleration of link 1 */
-    const real ups_alpha_1_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1;
-    const real ups_alpha_1_in_axes2_y = -v->ups_c_2*ups_qdd_1;
-    /* (ups-alpha_2) angular acceleration of link 2 */
-    const real ups_alpha_2_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
-    const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - v->ups_W_2_in_axes2_xz;
-    /* (ups-B_2) acceleration tensor of link 2 */
-    const real ups_B_2_t = v->axis_y_ups_axes2_x*v->ups_S_ddot_x;
-    const real ups_B_2_t_2 = v->axis_y_ups_axes2_y*v->ups_S_ddot_y;
-    const real ups_B_2_t_3 = v->axis_y_ups_axes2_z*v->ups_S_ddot_z;
-    const real ups_B_2_in_axes2_yx = v->inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-        v->ups_bias_t*v->ups_qd_2);
-    const real ups_B_2_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
-    const real ups_B_2_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
-    const real ups_B_2_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
-    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real ups_acc_3_t_4 = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
-    const real ups_g_in_axes2_x = m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x +
-        ups_acc_3_t_4*v->ups_c_2;
-    const real ups_g_in_axes2_y = ups_acc_3_t_4*v->ups_e_1_in_axes2_x -
-        m->ups_acc_3_t_3[i]*v->ups_c_2;
-    const real ups_acc_3_in_axes2_x = v->axis_x_ups_axes2_x*v->ups_S_ddot_x +
-        v->axis_x_ups_axes2_y*v->ups_S_ddot_y + v->axis_x_ups_axes2_z*v->ups_S_ddot_z -
-        ups_g_in_axes2_x;
-    const real ups_acc_3_in_axes2_y = ups_B_2_t - ups_g_in_axes2_y + ups_B_2_t_2 +
-        ups_B_2_t_3;
-    const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_g_in_axes2_z;
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
-    v->ups_alpha_1_in_axes2_x = ups_alpha_1_in_axes2_x;
-    v->ups_alpha_1_in_axes2_y = ups_alpha_1_in_axes2_y;
-    v->ups_B_2_in_axes2_yx = ups_B_2_in_axes2_yx;
-    v->ups_B_2_in_axes2_xy = ups_B_2_in_axes2_xy;
-    v->ups_B_2_in_axes2_zx = ups_B_2_in_axes2_zx;
-    v->ups_B_2_in_axes2_zy = ups_B_2_in_axes2_zy;
-    v->ups_g_in_axes2_x = ups_g_in_axes2_x;
-    v->ups_g_in_axes2_y = ups_g_in_axes2_y;
-    v->ups_acc_3_in_axes2_x = ups_acc_3_in_axes2_x;
-    v->ups_acc_3_in_axes2_y = ups_acc_3_in_axes2_y;
-    v->ups_acc_3_in_axes2_z = ups_acc_3_in_axes2_z;
-    v->ups_mu_2_t = ups_mu_2_t;
-}
-
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
-    *s)
-{
-    stage_V_X(w, k, V, v);
-    stage_M_dynamics(m, v);
-    stage_Z_dynamics(m, w, k, V, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
-    s[18*w + k] = v->Z_p_x;
-    s[19*w + k] = v->Z_p_y;
-    s[20*w + k] = v->Z_p_z;
-    s[21*w + k] = v->Z_q_x;
-    s[22*w + k] = v->Z_q_y;
-    s[23*w + k] = v->Z_q_z;
-}
-
-INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
-    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
-{
-    values_ups v;
-    stage_ups_X(m, w, i, j, s, X, &v);
-    stage_ups_V_X(w, j, V, &v);
-    stage_ups_Z_dynamics(m, w, i, j, V, &v);
-    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*v.ups_e_1_in_axes2_x;
-    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
-    const real ups_d_phi_3_in_axes2_xy = v.inv_ups_q_3*m->ups_h_3_in_spec2_z[i];
-    const real ups_d_phi_3_in_axes2_yy = v.inv_ups_q_3*m->ups_h_3_in_spec2_x[i];
-    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real ups_d_c_in_axes2_xz = v.inv_ups_q_3*m->ups_h_3_in_spec2_y[i];
-    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-        v.inv_ups_q_3*(m->ups_h_3_in_spec2_x[i] +
-        v.inv_ups_q_3*m->ups_J_group_2_in_axes2_zz[i]);
-    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
-        v.inv_ups_q_3*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
-        v.inv_ups_q_3*m->ups_J_group_2_in_axes2_yz[i]);
-    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
-        ups_d_phi_3_in_axes2_yy -
-        v.inv_ups_root_1*(v.ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
-        - m->ups_h_3_in_spec2_z[i] - v.inv_ups_q_3*m->ups_J_group_2_in_axes2_xy[i]) -
-        v.ups_c_2*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz -
-        m->ups_h_3_in_spec2_x[i] - v.inv_ups_q_3*m->ups_J_group_2_in_axes2_yy[i]));
-    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
-    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-    const real ups_Q_t_3 = v.axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
-        v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
-        v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t -
-        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
-        v.axis_z_ups_axes2_x*ups_Q_t_2;
-    const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
-        v.axis_z_ups_axes2_y*ups_Q_t_2;
-    const real ups_Q_t_8 = v.axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
-        v.axis_z_ups_axes2_z*ups_Q_t_2;
-    const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - v.axis_y_ups_axes2_x*ups_Q_t_3;
-    const real ups_Q_xx = -2*ups_Q_t_9;
-    const real ups_Q_xy = v.axis_y_ups_axes2_x*ups_Q_t_4 + v.axis_y_ups_axes2_y*ups_Q_t_3 -
-        v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
-    const real ups_Q_xz = v.axis_y_ups_axes2_z*ups_Q_t_3 - v.axis_y_ups_axes2_x*ups_Q_t_5 -
-        v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
-    const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - v.axis_y_ups_axes2_y*ups_Q_t_4;
-    const real ups_Q_yy = -2*ups_Q_t_10;
-    const real ups_Q_yz = v.axis_y_ups_axes2_z*ups_Q_t_4 - v.axis_y_ups_axes2_y*ups_Q_t_5 -
-        v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
-    const real ups_Q_t_11 = v.axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
-    const real ups_Q_zz = -2*ups_Q_t_11;
-    /* (M_ta) coupling block of M */
-    const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
-    const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
-    const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
-    const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
-    const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
-    const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
-    const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
-    const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
-    const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
-    const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
-    const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
-    const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
-    /* (M_aa) rotational block of M */
-    const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
-    const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y - ups_M_ta_t_8*v.ups_q_z;
-    const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
-    const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
-    const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
-    const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-    const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
-    const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
-    const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.axis_x_ups_axes2_x;
-    o[1*count + k] = v.axis_x_ups_axes2_y;
-    o[2*count + k] = v.axis_x_ups_axes2_z;
-    /* (ups-H_a_3) */
-    o[3*count + k] = ups_H_a_3_x;
-    o[4*count + k] = ups_H_a_3_y;
-    o[5*count + k] = ups_H_a_3_z;
-    o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
-        (ups_H_a_3_x + (ups_H_a_3_y + ups_H_a_3_z));
-    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-}
-
-INLINE void dynamics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    H[(3*NU + i)*w + k] = o[3*count + at];
-    H[(4*NU + i)*w + k] = o[4*count + at];
-    H[(5*NU + i)*w + k] = o[5*count + at];
-    t->singular[k] += o[6*count + at];
-    t->total[k] += o[7*count + at];
-}
-
-INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
-    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
-{
-    values_tube v;
-    stage_tube_X(m, w, i, j, s, X, &v);
-    stage_tube_V_X(w, j, V, &v);
-    stage_tube_Z_dynamics(m, i, &v);
-    stage_tube_dynamics_required(&v);
     /* (tube-w_1) force part of reciprocal wrench 1 */
-    const real tube_w_1_t_76 = v.inv_tube_w_1_t_75*v.tube_w_1_t_70;
-    const real tube_w_1_t_77 = v.inv_tube_w_1_t_75*v.tube_w_1_t_71;
-    const real tube_w_1_in_axes2_y = v.inv_tube_w_1_t_75*tube_w_1_t_76;
-    const real tube_w_1_in_axes2_z = v.inv_tube_w_1_t_75*tube_w_1_t_77;
-    const real tube_w_1_in_axes1_x = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_y;
-    const real tube_w_1_t_78 = v.tube_c_2*tube_w_1_in_axes2_y;
+    const real tube_w_1_in_axes2_y = v->inv_tube_w_1_t_75*v->tube_w_1_t_76;
+    const real tube_w_1_in_axes2_z = v->inv_tube_w_1_t_75*v->tube_w_1_t_77;
+    const real tube_w_1_in_axes1_x = v->tube_e_1_in_axes2_x*tube_w_1_in_axes2_y;
+    const real tube_w_1_t_78 = v->tube_c_2*tube_w_1_in_axes2_y;
     /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
-    const real tube_m1_w_1_t = v.inv_tube_w_1_t_75*v.tube_w_1_t_72;
-    const real tube_m1_w_1 = R(1.35)*v.inv_tube_w_1_t_75*tube_m1_w_1_t;
+    const real tube_m1_w_1 = R(1.35)*v->inv_tube_w_1_t_75*v->tube_m1_w_1_t;
     /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
-    const real tube_m2_w_1_t = v.inv_tube_w_1_t_75*v.tube_w_1_t_73;
-    const real tube_m2_w_1 = -R(1.35)*v.inv_tube_w_1_t_75*tube_m2_w_1_t;
+    const real tube_m2_w_1 = -R(1.35)*v->inv_tube_w_1_t_75*v->tube_m2_w_1_t;
     /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
-    const real tube_m3_w_1_t = v.inv_tube_w_1_t_75*v.tube_w_1_t_74;
-    const real tube_m3_w_1 = R(1.35)*v.inv_tube_w_1_t_75*tube_m3_w_1_t;
+    const real tube_m3_w_1 = R(1.35)*v->inv_tube_w_1_t_75*v->tube_m3_w_1_t;
     /* (tube-w_2) force part of reciprocal wrench 2 */
-    const real tube_w_2_t = v.inv_tube_w_1_t_13*v.inv_tube_w_1_t_33*v.tube_w_1_t_17;
-    const real tube_w_2_t_2 = v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_13*v.tube_w_1_t_21 -
-        v.tube_w_1_t_37*tube_w_2_t);
-    const real tube_w_2_t_3 = v.inv_tube_w_1_t_63*(v.tube_w_1_t_41*tube_w_2_t -
-        v.inv_tube_w_1_t_13*v.tube_w_1_t_25 + v.tube_w_1_t_53*tube_w_2_t_2);
-    const real tube_w_2_t_4 = v.inv_tube_w_1_t_75*(v.inv_tube_w_1_t_13*v.tube_w_1_t_29 -
-        v.tube_w_1_t_45*tube_w_2_t - v.tube_w_1_t_58*tube_w_2_t_2 +
-        v.tube_w_1_t_69*tube_w_2_t_3);
-    const real tube_w_2_in_axes2_y = v.inv_tube_w_1_t_13*v.tube_w_1_t_14 +
-        v.tube_w_1_t_34*tube_w_2_t + v.tube_w_1_t_50*tube_w_2_t_2 +
-        v.tube_w_1_t_64*tube_w_2_t_3 - tube_w_1_t_76*tube_w_2_t_4;
-    const real tube_w_2_in_axes2_z = v.inv_tube_w_1_t_49*tube_w_2_t_2 +
-        v.tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4;
+    const real tube_w_2_t = v->inv_tube_w_1_t_13*v->inv_tube_w_1_t_33*v->tube_w_1_t_17;
+    const real tube_w_2_t_2 = v->inv_tube_w_1_t_49*(v->inv_tube_w_1_t_13*v->tube_w_1_t_21 -
+        v->tube_w_1_t_37*tube_w_2_t);
+    const real tube_w_2_t_3 = v->inv_tube_w_1_t_63*(v->tube_w_1_t_41*tube_w_2_t -
+        v->inv_tube_w_1_t_13*v->tube_w_1_t_25 + v->tube_w_1_t_53*tube_w_2_t_2);
+    const real tube_w_2_t_4 = v->inv_tube_w_1_t_75*(v->inv_tube_w_1_t_13*v->tube_w_1_t_29 -
+        v->tube_w_1_t_45*tube_w_2_t - v->tube_w_1_t_58*tube_w_2_t_2 +
+        v->tube_w_1_t_69*tube_w_2_t_3);
+    const real tube_w_2_in_axes2_y = v->inv_tube_w_1_t_13*v->tube_w_1_t_14 +
+        v->tube_w_1_t_34*tube_w_2_t + v->tube_w_1_t_50*tube_w_2_t_2 +
+        v->tube_w_1_t_64*tube_w_2_t_3 - v->tube_w_1_t_76*tube_w_2_t_4;
+    const real tube_w_2_in_axes2_z = v->inv_tube_w_1_t_49*tube_w_2_t_2 +
+        v->tube_w_1_t_65*tube_w_2_t_3 - v->tube_w_1_t_77*tube_w_2_t_4;
     /* (tube-m1_w_2) moment part 1 of reciprocal wrench 2 */
-    const real tube_m1_w_2_t = v.inv_tube_w_1_t_13*v.tube_w_1_t_15 +
-        v.tube_w_1_t_35*tube_w_2_t + v.tube_w_1_t_51*tube_w_2_t_2 +
-        v.tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4;
+    const real tube_m1_w_2_t = v->inv_tube_w_1_t_13*v->tube_w_1_t_15 +
+        v->tube_w_1_t_35*tube_w_2_t + v->tube_w_1_t_51*tube_w_2_t_2 +
+        v->tube_w_1_t_66*tube_w_2_t_3 - v->tube_m1_w_1_t*tube_w_2_t_4;
     const real tube_m1_w_2 = R(1.35)*tube_m1_w_2_t;
     /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
-    const real tube_m2_w_2_t = v.tube_w_1_t_67*tube_w_2_t_3 + tube_m2_w_1_t*tube_w_2_t_4;
+    const real tube_m2_w_2_t = v->tube_w_1_t_67*tube_w_2_t_3 + v->tube_m2_w_1_t*tube_w_2_t_4;
     const real tube_m2_w_2 = R(1.35)*tube_m2_w_2_t;
     /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
-    const real tube_m3_w_2_t = v.inv_tube_w_1_t_13*v.tube_w_1_t_16 +
-        v.tube_w_1_t_36*tube_w_2_t + v.tube_w_1_t_52*tube_w_2_t_2 +
-        v.tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4;
+    const real tube_m3_w_2_t = v->inv_tube_w_1_t_13*v->tube_w_1_t_16 +
+        v->tube_w_1_t_36*tube_w_2_t + v->tube_w_1_t_52*tube_w_2_t_2 +
+        v->tube_w_1_t_68*tube_w_2_t_3 - v->tube_m3_w_1_t*tube_w_2_t_4;
     const real tube_m3_w_2 = R(1.35)*tube_m3_w_2_t;
     /* (tube-o_1) moment part of reciprocal wrench 1 */
-    const real tube_o_1_in_axes2_x = -v.tube_end_p2_in_axes2_y*tube_m2_w_1 -
-        v.tube_end_p3_in_axes2_z*tube_m3_w_1;
-    const real tube_o_1_in_axes2_y = tube_m2_w_1*v.tube_n_m2_in_axes2_y -
-        v.tube_end_p1_in_axes2_z*tube_m1_w_1;
-    const real tube_o_1_in_axes2_z = tube_m1_w_1*v.tube_n_m1_in_axes2_z +
-        tube_m3_w_1*v.tube_n_m3_in_axes2_z;
+    const real tube_o_1_in_axes2_x = -v->tube_end_p2_in_axes2_y*tube_m2_w_1 -
+        v->tube_end_p3_in_axes2_z*tube_m3_w_1;
+    const real tube_o_1_in_axes2_y = tube_m2_w_1*v->tube_n_m2_in_axes2_y -
+        v->tube_end_p1_in_axes2_z*tube_m1_w_1;
+    const real tube_o_1_in_axes2_z = tube_m1_w_1*v->tube_n_m1_in_axes2_z +
+        tube_m3_w_1*v->tube_n_m3_in_axes2_z;
     /* (tube-o_2) moment part of reciprocal wrench 2 */
-    const real tube_o_2_in_axes2_x = -v.tube_end_p2_in_axes2_y*tube_m2_w_2 -
-        v.tube_end_p3_in_axes2_z*tube_m3_w_2;
-    const real tube_o_2_in_axes2_y = tube_m2_w_2*v.tube_n_m2_in_axes2_y -
-        v.tube_end_p1_in_axes2_z*tube_m1_w_2;
-    const real tube_o_2_in_axes2_z = tube_m1_w_2*v.tube_n_m1_in_axes2_z +
-        tube_m3_w_2*v.tube_n_m3_in_axes2_z;
-    /* (tube-qd_1) rate of joint 1 */
-    const real tube_qd_1_t = R(1.35)*v.tube_eta_1;
-    const real tube_qd_1_t_2 = R(1.35)*v.tube_eta_2;
-    const real tube_qd_1_t_3 = R(1.35)*v.tube_eta_3;
-    const real tube_qd_1 = v.inv_tube_w_1_t_75*(v.tube_S_dot_in_axes2_y*tube_w_1_t_76 +
-        v.tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
-        tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2);
-    /* (tube-qd_2) rate of joint 2 */
-    const real tube_qd_2_t = v.inv_tube_w_1_t_63*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_64 +
-        v.tube_S_dot_in_axes2_z*v.tube_w_1_t_65 + tube_qd_1_t*v.tube_w_1_t_66 +
-        tube_qd_1_t_2*v.tube_w_1_t_67 + tube_qd_1_t_3*v.tube_w_1_t_68 -
-        tube_qd_1*v.tube_w_1_t_69);
-    const real tube_qd_2_t_2 =
-        v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*v.tube_S_dot_in_axes2_z +
-        v.tube_S_dot_in_axes2_y*v.tube_w_1_t_50 + tube_qd_1_t*v.tube_w_1_t_51 +
-        tube_qd_1_t_3*v.tube_w_1_t_52 + tube_qd_1*v.tube_w_1_t_58 +
-        tube_qd_2_t*v.tube_w_1_t_53);
-    const real tube_qd_2_t_3 = v.tube_S_dot_in_axes2_y*v.tube_w_1_t_14 +
-        tube_qd_1_t*v.tube_w_1_t_15 + tube_qd_1_t_3*v.tube_w_1_t_16 -
-        tube_qd_1*v.tube_w_1_t_29 - tube_qd_2_t*v.tube_w_1_t_25 +
-        tube_qd_2_t_2*v.tube_w_1_t_21 +
-        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_34 +
-        tube_qd_1_t*v.tube_w_1_t_35 + tube_qd_1_t_3*v.tube_w_1_t_36 +
-        tube_qd_1*v.tube_w_1_t_45 + tube_qd_2_t*v.tube_w_1_t_41 -
-        tube_qd_2_t_2*v.tube_w_1_t_37);
-    const real tube_qd_2 = v.inv_tube_w_1_t_13*tube_qd_2_t_3;
-    /* (tube-omega_1) angular velocity of link 1 */
-    const real tube_omega_1_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qd_1;
-    const real tube_omega_1_in_axes2_y = -v.tube_c_2*tube_qd_1;
-    /* (tube-W_2) centripetal tensor of link 2 */
-    const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
-    const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
-    const real tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
-    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-    const real tube_bias_t = tube_W_2_in_axes2_xz*v.tube_q_3;
-    const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*v.tube_q_3;
-    const real tube_bias_t_4 = v.tube_bias_t_3*tube_qd_2;
-    const real tube_bias_t_5 = v.tube_bias_t_3*tube_omega_1_in_axes2_y;
-    const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
-    const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
-    /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
-        v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
-        tube_bias_in_axes2_y;
-    const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
-        v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
-        tube_bias_in_axes2_z;
-    /* (tube-nd_m1) rate of moment direction 1 */
-    const real tube_nd_m1_in_axes2_y = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_y -
-        v.tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_x -
-        v.tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y;
-    const real tube_nd_m1_in_axes2_z = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_z -
-        v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_x - v.tube_end_p1_in_axes2_x*tube_qd_2;
-    /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real tube_nu_1_t = tube_omega_1_in_axes2_x - v.tube_omega_in_axes2_x;
-    const real tube_nu_1_t_2 = v.tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
-    const real tube_nu_1_t_3 = v.tube_omega_in_axes2_z - tube_qd_2;
-    const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
-        tube_nu_1_t*(v.tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y +
-        v.tube_end_p1_in_axes2_z*tube_qd_2);
-    const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v.tube_end_p1_in_axes2_z;
-    /* (tube-nd_m2) rate of moment direction 2 */
-    const real tube_nd_m2_in_axes2_x = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_x -
-        v.tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_z -
-        v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x;
-    const real tube_nd_m2_in_axes2_y = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_y -
-        v.tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_z -
-        v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
-    /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-    const real tube_nu_2_t = -tube_W_2_in_axes2_xz*v.tube_n_m2_in_axes2_y -
-        tube_W_2_in_axes2_yz*v.tube_end_p2_in_axes2_y;
-    const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
-        tube_nd_m2_in_axes2_x*tube_nu_1_t -
-        tube_nu_1_t_3*(-v.tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-        v.tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
-    const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
-    /* (tube-nd_m3) rate of moment direction 3 */
-    const real tube_nd_m3_in_axes2_x = v.tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_y -
-        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_x +
-        v.tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x;
-    const real tube_nd_m3_in_axes2_z = v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_y -
-        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_z + v.tube_end_p3_in_axes2_y*tube_qd_2;
-    /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-    const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-        tube_nu_1_t_2*(v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x +
-        v.tube_end_p3_in_axes2_z*tube_qd_2) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
-    const real tube_nu_3 = tube_W_2_in_axes2_yz*v.tube_end_p3_in_axes2_z - tube_nu_3_t;
-    /* (tube-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real tube_qdd_1_o_t = R(1.35)*tube_nu_1;
-    const real tube_qdd_1_o_t_2 = R(1.35)*tube_nu_2;
-    const real tube_qdd_1_o_t_3 = R(1.35)*tube_nu_3;
-    const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(tube_rel_o_in_axes2_y*tube_w_1_t_76 -
-        tube_m2_w_1_t*tube_qdd_1_o_t_2 + tube_m1_w_1_t*tube_qdd_1_o_t +
-        tube_m3_w_1_t*tube_qdd_1_o_t_3 + tube_rel_o_in_axes2_z*tube_w_1_t_77);
-    /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t_2*v.tube_w_1_t_67 +
-        tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_qdd_1_o_t*v.tube_w_1_t_66 +
-        tube_qdd_1_o_t_3*v.tube_w_1_t_68 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
-        tube_qdd_1_o*v.tube_w_1_t_69);
-    const real tube_qdd_2_o_t_2 = v.inv_tube_w_1_t_49*(tube_rel_o_in_axes2_y*v.tube_w_1_t_50 +
-        v.inv_tube_w_1_t_49*tube_rel_o_in_axes2_z + tube_qdd_1_o_t*v.tube_w_1_t_51 +
-        tube_qdd_1_o_t_3*v.tube_w_1_t_52 + tube_qdd_1_o*v.tube_w_1_t_58 +
-        tube_qdd_2_o_t*v.tube_w_1_t_53);
-    const real tube_qdd_2_o_t_3 = tube_rel_o_in_axes2_y*v.tube_w_1_t_14 +
-        tube_qdd_1_o_t*v.tube_w_1_t_15 + tube_qdd_1_o_t_3*v.tube_w_1_t_16 -
-        tube_qdd_1_o*v.tube_w_1_t_29 - tube_qdd_2_o_t*v.tube_w_1_t_25 +
-        tube_qdd_2_o_t_2*v.tube_w_1_t_21 +
-        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_rel_o_in_axes2_y*v.tube_w_1_t_34 +
-        tube_qdd_1_o_t*v.tube_w_1_t_35 + tube_qdd_1_o_t_3*v.tube_w_1_t_36 +
-        tube_qdd_1_o*v.tube_w_1_t_45 + tube_qdd_2_o_t*v.tube_w_1_t_41 -
-        tube_qdd_2_o_t_2*v.tube_w_1_t_37);
-    const real tube_qdd_2_o = v.inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
+    const real tube_o_2_in_axes2_x = -v->tube_end_p2_in_axes2_y*tube_m2_w_2 -
+        v->tube_end_p3_in_axes2_z*tube_m3_w_2;
+    const real tube_o_2_in_axes2_y = tube_m2_w_2*v->tube_n_m2_in_axes2_y -
+        v->tube_end_p1_in_axes2_z*tube_m1_w_2;
+    const real tube_o_2_in_axes2_z = tube_m1_w_2*v->tube_n_m1_in_axes2_z +
+        tube_m3_w_2*v->tube_n_m3_in_axes2_z;
     /* (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real tube_dalpha_alpha_1_t = v.tube_c_2*tube_o_1_in_axes2_x;
-    const real tube_dalpha_alpha_1_in_axes2_xy = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_y;
-    const real tube_dalpha_alpha_1_t_2 = v.tube_c_2*tube_o_1_in_axes2_y;
-    const real tube_dalpha_alpha_1_in_axes2_xx = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_x;
-    const real tube_dalpha_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_z;
-    const real tube_dalpha_alpha_1_t_3 = v.tube_c_2*tube_o_1_in_axes2_z;
+    const real tube_dalpha_alpha_1_t = v->tube_c_2*tube_o_1_in_axes2_x;
+    const real tube_dalpha_alpha_1_in_axes2_xy = v->tube_e_1_in_axes2_x*tube_o_1_in_axes2_y;
+    const real tube_dalpha_alpha_1_t_2 = v->tube_c_2*tube_o_1_in_axes2_y;
+    const real tube_dalpha_alpha_1_in_axes2_xx = v->tube_e_1_in_axes2_x*tube_o_1_in_axes2_x;
+    const real tube_dalpha_alpha_1_in_axes2_xz = v->tube_e_1_in_axes2_x*tube_o_1_in_axes2_z;
+    const real tube_dalpha_alpha_1_t_3 = v->tube_c_2*tube_o_1_in_axes2_z;
     /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real tube_d_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_z;
-    const real tube_d_alpha_1_t = v.tube_c_2*tube_w_1_in_axes2_z;
-    /* (tube-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real tube_alpha_1_o_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qdd_1_o;
-    const real tube_alpha_1_o_in_axes2_y = -v.tube_c_2*tube_qdd_1_o;
-    /* (tube-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
-    const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz;
-    /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real tube_B_2_o_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2_o;
-    const real tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o;
-    const real tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
-    const real tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
+    const real tube_d_alpha_1_in_axes2_xz = v->tube_e_1_in_axes2_x*tube_w_1_in_axes2_z;
+    const real tube_d_alpha_1_t = v->tube_c_2*tube_w_1_in_axes2_z;
     /* (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
        link 3, less gravity */
-    const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*v.tube_q_3;
-    const real tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*v.tube_q_3;
-    const real tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*v.tube_q_3;
-    const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*v.tube_q_3;
-    const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*v.tube_q_3;
-    const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*v.tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*v->tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*v->tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*v->tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*v->tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*v->tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*v->tube_q_3;
     /* (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
        3, less gravity */
-    const real tube_d_acc_3_in_axes2_yy = v.tube_q_3*tube_w_2_in_axes2_y;
-    const real tube_d_acc_3_in_axes2_yz = v.tube_q_3*tube_w_2_in_axes2_z;
-    const real tube_d_acc_3_in_axes2_zy = v.tube_q_3*tube_w_1_t_78;
-    const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*v.tube_q_3;
-    /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 - v.tube_g_in_axes2_y - tube_bias_t_2 +
-        v.tube_q_3*tube_qdd_2_o;
-    const real tube_acc_3_o_in_axes2_z = tube_bias_t - v.tube_g_in_axes2_z - tube_bias_t_5 -
-        tube_alpha_2_o_in_axes2_y*v.tube_q_3;
-    /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
-    const real tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
-    const real tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
-    const real tube_f_3_o_t_3 = tube_qd_2*tube_qd_2;
-    const real tube_f_3_o_in_axes2_x = v.tube_acc_3_o_in_axes2_x*m->tube_link3_mass[i] -
-        m->tube_h_3_in_spec2_x[i]*(tube_f_3_o_t_2 + tube_f_3_o_t_3) +
-        tube_alpha_1_o_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_h_3_in_spec2_z[i];
-    const real tube_f_3_o_in_axes2_y = m->tube_h_3_in_spec2_z[i]*(tube_f_3_o_t +
-        tube_f_3_o_t_3) - tube_alpha_1_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
-        tube_B_2_o_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
-        tube_acc_3_o_in_axes2_y*m->tube_link3_mass[i];
-    const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
-        m->tube_h_3_in_spec2_y[i]*(tube_f_3_o_t + tube_f_3_o_t_2) +
-        tube_acc_3_o_in_axes2_z*m->tube_link3_mass[i] -
-        tube_B_2_o_in_axes2_zy*m->tube_h_3_in_spec2_z[i];
-    /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real tube_mu_2_o_in_axes2_x = v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_z[i] +
-        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_y[i] +
-        m->tube_J_group_2_in_axes2_yz[i]*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
-        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_x +
-        tube_B_2_o_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] -
-        tube_B_2_o_in_axes2_zx*m->tube_J_group_2_in_axes2_xy[i] -
-        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_z[i] +
-        tube_B_2_o_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] -
-        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_y[i];
-    const real tube_mu_2_o_in_axes2_y = v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_x[i] -
-        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_y[i] +
-        v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] -
-        m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_o_t - tube_f_3_o_t_3) +
-        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_y +
-        tube_B_2_o_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] -
-        tube_B_2_o_in_axes2_zx*m->tube_Sigma_2_in_axes2_xx[i] -
-        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_x[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i];
-    const real tube_mu_2_o_in_axes2_z = v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_z[i] -
-        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_z[i] -
-        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_x[i] +
-        m->tube_J_group_2_in_axes2_xy[i]*(tube_f_3_o_t - tube_f_3_o_t_2) +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_o_in_axes2_x +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_o_in_axes2_y +
-        tube_B_2_o_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i] +
-        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_x[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i];
+    const real tube_d_acc_3_in_axes2_yy = v->tube_q_3*tube_w_2_in_axes2_y;
+    const real tube_d_acc_3_in_axes2_yz = v->tube_q_3*tube_w_2_in_axes2_z;
+    const real tube_d_acc_3_in_axes2_zy = v->tube_q_3*tube_w_1_t_78;
+    const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*v->tube_q_3;
     /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
        outwards, the force at the connection point left out */
     const real tube_dalpha_N_2_in_axes2_zx =
@@ -4033,7 +2776,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
         m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xx +
         tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_x[i] -
         m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t +
-        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_x +
+        v->tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_x +
         tube_dalpha_acc_3_in_axes2_yx*m->tube_link3_mass[i] -
         tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_y[i]);
     const real tube_dalpha_N_2_in_axes2_zy =
@@ -4041,7 +2784,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
         m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xy +
         tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] -
         m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_2 +
-        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_y +
+        v->tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_y +
         tube_dalpha_acc_3_in_axes2_yy*m->tube_link3_mass[i] -
         tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_y[i]);
     const real tube_dalpha_N_2_in_axes2_zz =
@@ -4049,7 +2792,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
         m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xz +
         tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] -
         m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_3 +
-        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_z +
+        v->tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_z +
         tube_dalpha_acc_3_in_axes2_yz*m->tube_link3_mass[i] -
         tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]);
     /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
@@ -4058,93 +2801,87 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
         m->tube_J_group_2_in_axes2_xz[i]*tube_w_1_in_axes1_x +
         tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] -
         m->tube_J_group_2_in_axes2_yz[i]*tube_w_1_t_78 +
-        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_y +
+        v->tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_y +
         tube_d_acc_3_in_axes2_yy*m->tube_link3_mass[i] -
         m->tube_h_3_in_spec2_y[i]*tube_w_1_in_axes1_x);
     const real tube_d_N_2_in_axes2_zz = m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_z +
         m->tube_J_group_2_in_axes2_xz[i]*tube_d_alpha_1_in_axes2_xz +
         tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] -
         m->tube_J_group_2_in_axes2_yz[i]*tube_d_alpha_1_t +
-        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_z +
+        v->tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_z +
         tube_d_acc_3_in_axes2_yz*m->tube_link3_mass[i] -
         tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]);
-    /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-       connection point left out */
-    const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
-        tube_f_3_o_in_axes2_z*v.tube_q_3;
-    const real tube_N_2_o_in_axes2_z = tube_f_3_o_in_axes2_y*v.tube_q_3 +
-        tube_mu_2_o_in_axes2_z;
     /* (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
        links' inertia and weight */
     const real tube_dalpha_Gamma_1_t =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_x +
+        v->tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_x +
         m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xx -
         m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t -
         tube_dalpha_acc_3_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
+        v->tube_q_3*(tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
         tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_z[i] +
         tube_dalpha_acc_3_in_axes2_zx*m->tube_link3_mass[i]));
     const real tube_dalpha_Gamma_1_in_axes2_x =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_x +
+        v->tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_x +
         m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xx -
         m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t -
         tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_y[i] -
         tube_dalpha_acc_3_in_axes2_zx*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t;
     const real tube_dalpha_Gamma_1_t_2 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_y +
+        v->tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_y +
         m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xy -
         m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t_2 -
         tube_dalpha_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_x[i] -
+        v->tube_q_3*(tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_x[i] -
         tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_z[i] +
         tube_dalpha_acc_3_in_axes2_zy*m->tube_link3_mass[i]));
     const real tube_dalpha_Gamma_1_in_axes2_y =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_y +
+        v->tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_y +
         m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xy -
         m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t_2 -
         tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_y[i] -
         tube_dalpha_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t_2;
     const real tube_dalpha_Gamma_1_t_3 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_z +
+        v->tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_z +
         m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xz -
         m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t_3 -
         tube_dalpha_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_x[i] -
+        v->tube_q_3*(tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_x[i] -
         tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i] +
         tube_dalpha_acc_3_in_axes2_zz*m->tube_link3_mass[i]));
     const real tube_dalpha_Gamma_1_in_axes2_z =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_z +
+        v->tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_z +
         m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xz -
         m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t_3 -
         tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_y[i] -
         tube_dalpha_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t_3;
     /* (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real tube_d_Gamma_1_t = v.tube_c_2*m->tube_h_3_in_spec2_y[i];
+    const real tube_d_Gamma_1_t = v->tube_c_2*m->tube_h_3_in_spec2_y[i];
     const real tube_d_Gamma_1_t_2 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_y +
+        v->tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_y +
         m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_in_axes1_x -
         m->tube_J_group_2_in_axes2_yy[i]*tube_w_1_t_78 -
         tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_1_t_78 -
+        v->tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_1_t_78 -
         m->tube_h_3_in_spec2_z[i]*tube_w_1_in_axes1_x +
         tube_d_acc_3_in_axes2_zy*m->tube_link3_mass[i]));
     const real tube_d_Gamma_1_in_axes2_y =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_y +
+        v->tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_y +
         m->tube_J_group_2_in_axes2_xx[i]*tube_w_1_in_axes1_x -
         m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_t_78 -
         tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_y[i] -
         tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_z[i]) - tube_d_Gamma_1_t_2;
     const real tube_d_Gamma_1_t_3 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_z +
+        v->tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_z +
         m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_in_axes2_xz -
         m->tube_J_group_2_in_axes2_yy[i]*tube_d_alpha_1_t -
         tube_d_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_d_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
+        v->tube_q_3*(tube_d_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
         tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i] +
         tube_d_acc_3_in_axes2_zz*m->tube_link3_mass[i]));
     const real tube_d_Gamma_1_in_axes2_z =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_z +
+        v->tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_z +
         m->tube_J_group_2_in_axes2_xx[i]*tube_d_alpha_1_in_axes2_xz -
         m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_t -
         tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_y[i] -
@@ -4167,23 +2904,6 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
        leg's inertia and weight along all degrees of freedom */
     const real tube_d_G_in_axes2_yz = tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y +
         tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y;
-    /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
-    const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
-    const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
-        tube_G_o_t_2*v.tube_w_1_t_37);
-    const real tube_G_o_t_4 = v.inv_tube_w_1_t_63*(tube_G_o_t_2*v.tube_w_1_t_41 -
-        tube_G_o_t*v.tube_w_1_t_25 + tube_G_o_t_3*v.tube_w_1_t_53);
-    const real tube_G_o_t_5 = v.inv_tube_w_1_t_75*(tube_N_2_o_in_axes2_y*v.tube_c_2 -
-        v.tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x + tube_G_o_t*v.tube_w_1_t_29 -
-        tube_G_o_t_2*v.tube_w_1_t_45 - tube_G_o_t_3*v.tube_w_1_t_58 +
-        tube_G_o_t_4*v.tube_w_1_t_69);
-    const real tube_G_o_in_axes2_y = tube_G_o_t*v.tube_w_1_t_14 + tube_G_o_t_2*v.tube_w_1_t_34
-        + tube_G_o_t_3*v.tube_w_1_t_50 + tube_G_o_t_4*v.tube_w_1_t_64 -
-        tube_G_o_t_5*tube_w_1_t_76;
-    const real tube_G_o_in_axes2_z = v.inv_tube_w_1_t_49*tube_G_o_t_3 +
-        tube_G_o_t_4*v.tube_w_1_t_65 - tube_G_o_t_5*tube_w_1_t_77;
     /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
        balances the leg's inertia and weight along all degrees of freedom */
     const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2 +
@@ -4200,12 +2920,6 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
         tube_d_Gamma_1_in_axes2_y*tube_m1_w_1;
     const real tube_d_G_m1_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m1_w_2 +
         tube_d_Gamma_1_in_axes2_z*tube_m1_w_1;
-    /* (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real tube_G_m1_o_t = tube_G_o_t*v.tube_w_1_t_15 + tube_G_o_t_2*v.tube_w_1_t_35 +
-        tube_G_o_t_3*v.tube_w_1_t_51 + tube_G_o_t_4*v.tube_w_1_t_66 -
-        tube_G_o_t_5*tube_m1_w_1_t;
-    const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
     /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
        balances the leg's inertia and weight along all degrees of freedom */
     const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2 +
@@ -4222,10 +2936,6 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
         tube_d_Gamma_1_in_axes2_y*tube_m2_w_1;
     const real tube_d_G_m2_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m2_w_2 +
         tube_d_Gamma_1_in_axes2_z*tube_m2_w_1;
-    /* (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real tube_G_m2_o_t = tube_G_o_t_4*v.tube_w_1_t_67 + tube_G_o_t_5*tube_m2_w_1_t;
-    const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
     /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
        balances the leg's inertia and weight along all degrees of freedom */
     const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2 +
@@ -4242,69 +2952,55 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
         tube_d_Gamma_1_in_axes2_y*tube_m3_w_1;
     const real tube_d_G_m3_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m3_w_2 +
         tube_d_Gamma_1_in_axes2_z*tube_m3_w_1;
-    /* (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real tube_G_m3_o_t = tube_G_o_t*v.tube_w_1_t_16 + tube_G_o_t_2*v.tube_w_1_t_36 +
-        tube_G_o_t_3*v.tube_w_1_t_52 + tube_G_o_t_4*v.tube_w_1_t_68 -
-        tube_G_o_t_5*tube_m3_w_1_t;
-    const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
     /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
        balances the leg's inertia and weight along all degrees of freedom */
     const real tube_dalpha_G_m_in_axes2_xx =
-        -tube_dalpha_G_m2_in_axes2_x*v.tube_end_p2_in_axes2_y -
-        tube_dalpha_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
+        -tube_dalpha_G_m2_in_axes2_x*v->tube_end_p2_in_axes2_y -
+        tube_dalpha_G_m3_in_axes2_x*v->tube_end_p3_in_axes2_z;
     const real tube_dalpha_G_m_in_axes2_xy =
-        -tube_dalpha_G_m2_in_axes2_y*v.tube_end_p2_in_axes2_y -
-        tube_dalpha_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
+        -tube_dalpha_G_m2_in_axes2_y*v->tube_end_p2_in_axes2_y -
+        tube_dalpha_G_m3_in_axes2_y*v->tube_end_p3_in_axes2_z;
     const real tube_dalpha_G_m_in_axes2_xz =
-        -tube_dalpha_G_m2_in_axes2_z*v.tube_end_p2_in_axes2_y -
-        tube_dalpha_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
+        -tube_dalpha_G_m2_in_axes2_z*v->tube_end_p2_in_axes2_y -
+        tube_dalpha_G_m3_in_axes2_z*v->tube_end_p3_in_axes2_z;
     const real tube_dalpha_G_m_in_axes2_yx =
-        tube_dalpha_G_m2_in_axes2_x*v.tube_n_m2_in_axes2_y -
-        tube_dalpha_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
+        tube_dalpha_G_m2_in_axes2_x*v->tube_n_m2_in_axes2_y -
+        tube_dalpha_G_m1_in_axes2_x*v->tube_end_p1_in_axes2_z;
     const real tube_dalpha_G_m_in_axes2_yy =
-        tube_dalpha_G_m2_in_axes2_y*v.tube_n_m2_in_axes2_y -
-        tube_dalpha_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
+        tube_dalpha_G_m2_in_axes2_y*v->tube_n_m2_in_axes2_y -
+        tube_dalpha_G_m1_in_axes2_y*v->tube_end_p1_in_axes2_z;
     const real tube_dalpha_G_m_in_axes2_yz =
-        tube_dalpha_G_m2_in_axes2_z*v.tube_n_m2_in_axes2_y -
-        tube_dalpha_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
+        tube_dalpha_G_m2_in_axes2_z*v->tube_n_m2_in_axes2_y -
+        tube_dalpha_G_m1_in_axes2_z*v->tube_end_p1_in_axes2_z;
     const real tube_dalpha_G_m_in_axes2_zx =
-        tube_dalpha_G_m1_in_axes2_x*v.tube_n_m1_in_axes2_z +
-        tube_dalpha_G_m3_in_axes2_x*v.tube_n_m3_in_axes2_z;
+        tube_dalpha_G_m1_in_axes2_x*v->tube_n_m1_in_axes2_z +
+        tube_dalpha_G_m3_in_axes2_x*v->tube_n_m3_in_axes2_z;
     const real tube_dalpha_G_m_in_axes2_zy =
-        tube_dalpha_G_m1_in_axes2_y*v.tube_n_m1_in_axes2_z +
-        tube_dalpha_G_m3_in_axes2_y*v.tube_n_m3_in_axes2_z;
+        tube_dalpha_G_m1_in_axes2_y*v->tube_n_m1_in_axes2_z +
+        tube_dalpha_G_m3_in_axes2_y*v->tube_n_m3_in_axes2_z;
     const real tube_dalpha_G_m_in_axes2_zz =
-        tube_dalpha_G_m1_in_axes2_z*v.tube_n_m1_in_axes2_z +
-        tube_dalpha_G_m3_in_axes2_z*v.tube_n_m3_in_axes2_z;
+        tube_dalpha_G_m1_in_axes2_z*v->tube_n_m1_in_axes2_z +
+        tube_dalpha_G_m3_in_axes2_z*v->tube_n_m3_in_axes2_z;
     /* (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
        the leg's inertia and weight along all degrees of freedom */
-    const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*v.tube_end_p2_in_axes2_y -
-        tube_d_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*v.tube_end_p2_in_axes2_y -
-        tube_d_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_xz = -tube_d_G_m2_in_axes2_z*v.tube_end_p2_in_axes2_y -
-        tube_d_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_yx = tube_d_G_m2_in_axes2_x*v.tube_n_m2_in_axes2_y -
-        tube_d_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
-    const real tube_d_G_m_in_axes2_yy = tube_d_G_m2_in_axes2_y*v.tube_n_m2_in_axes2_y -
-        tube_d_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
-    const real tube_d_G_m_in_axes2_yz = tube_d_G_m2_in_axes2_z*v.tube_n_m2_in_axes2_y -
-        tube_d_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
-    const real tube_d_G_m_in_axes2_zx = tube_d_G_m1_in_axes2_x*v.tube_n_m1_in_axes2_z +
-        tube_d_G_m3_in_axes2_x*v.tube_n_m3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_zy = tube_d_G_m1_in_axes2_y*v.tube_n_m1_in_axes2_z +
-        tube_d_G_m3_in_axes2_y*v.tube_n_m3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*v.tube_n_m1_in_axes2_z +
-        tube_d_G_m3_in_axes2_z*v.tube_n_m3_in_axes2_z;
-    /* (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v.tube_end_p2_in_axes2_y -
-        tube_G_m3_o*v.tube_end_p3_in_axes2_z;
-    const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v.tube_n_m2_in_axes2_y -
-        tube_G_m1_o*v.tube_end_p1_in_axes2_z;
-    const real tube_G_m_o_in_axes2_z = tube_G_m1_o*v.tube_n_m1_in_axes2_z +
-        tube_G_m3_o*v.tube_n_m3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*v->tube_end_p2_in_axes2_y -
+        tube_d_G_m3_in_axes2_x*v->tube_end_p3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*v->tube_end_p2_in_axes2_y -
+        tube_d_G_m3_in_axes2_y*v->tube_end_p3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_xz = -tube_d_G_m2_in_axes2_z*v->tube_end_p2_in_axes2_y -
+        tube_d_G_m3_in_axes2_z*v->tube_end_p3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_yx = tube_d_G_m2_in_axes2_x*v->tube_n_m2_in_axes2_y -
+        tube_d_G_m1_in_axes2_x*v->tube_end_p1_in_axes2_z;
+    const real tube_d_G_m_in_axes2_yy = tube_d_G_m2_in_axes2_y*v->tube_n_m2_in_axes2_y -
+        tube_d_G_m1_in_axes2_y*v->tube_end_p1_in_axes2_z;
+    const real tube_d_G_m_in_axes2_yz = tube_d_G_m2_in_axes2_z*v->tube_n_m2_in_axes2_y -
+        tube_d_G_m1_in_axes2_z*v->tube_end_p1_in_axes2_z;
+    const real tube_d_G_m_in_axes2_zx = tube_d_G_m1_in_axes2_x*v->tube_n_m1_in_axes2_z +
+        tube_d_G_m3_in_axes2_x*v->tube_n_m3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_zy = tube_d_G_m1_in_axes2_y*v->tube_n_m1_in_axes2_z +
+        tube_d_G_m3_in_axes2_y*v->tube_n_m3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*v->tube_n_m1_in_axes2_z +
+        tube_d_G_m3_in_axes2_z*v->tube_n_m3_in_axes2_z;
     /* (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
        and without the mass at the connection point */
     const real tube_dalpha_c_in_axes2_xx = tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_y[i] -
@@ -4326,252 +3022,1021 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     const real tube_Q_t_3 = tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - m->tube_link3_mass[i]
         + tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z;
     const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
-    const real tube_Q_t_5 = v.axis_y_tube_axes2_x*tube_Q_t_2 -
-        v.axis_x_tube_axes2_x*tube_d_c_in_axes2_xy +
-        v.axis_z_tube_axes2_x*tube_d_G_in_axes2_yz;
-    const real tube_Q_t_6 = v.axis_y_tube_axes2_y*tube_Q_t_2 -
-        v.axis_x_tube_axes2_y*tube_d_c_in_axes2_xy +
-        v.axis_z_tube_axes2_y*tube_d_G_in_axes2_yz;
-    const real tube_Q_t_7 = v.axis_y_tube_axes2_z*tube_Q_t_2 -
-        v.axis_x_tube_axes2_z*tube_d_c_in_axes2_xy +
-        v.axis_z_tube_axes2_z*tube_d_G_in_axes2_yz;
-    const real tube_Q_t_8 = v.axis_z_tube_axes2_x*tube_Q_t_4 -
-        v.axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
-    const real tube_Q_t_9 = v.axis_z_tube_axes2_y*tube_Q_t_4 -
-        v.axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
-    const real tube_Q_t_10 = v.axis_z_tube_axes2_z*tube_Q_t_4 -
-        v.axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
-    const real tube_Q_t_11 = v.axis_z_tube_axes2_x*tube_Q_t_8 +
-        v.axis_y_tube_axes2_x*tube_Q_t_5;
-    const real tube_Q_xx = m->tube_link3_mass[i] + 2*tube_Q_t_11;
-    const real tube_Q_xy = v.axis_z_tube_axes2_x*tube_Q_t_9 + v.axis_z_tube_axes2_y*tube_Q_t_8
-        + v.axis_y_tube_axes2_x*tube_Q_t_6 + v.axis_y_tube_axes2_y*tube_Q_t_5;
-    const real tube_Q_xz = v.axis_z_tube_axes2_x*tube_Q_t_10 +
-        v.axis_z_tube_axes2_z*tube_Q_t_8 + v.axis_y_tube_axes2_x*tube_Q_t_7 +
-        v.axis_y_tube_axes2_z*tube_Q_t_5;
-    const real tube_Q_t_12 = v.axis_z_tube_axes2_y*tube_Q_t_9 +
-        v.axis_y_tube_axes2_y*tube_Q_t_6;
-    const real tube_Q_yy = m->tube_link3_mass[i] + 2*tube_Q_t_12;
-    const real tube_Q_yz = v.axis_z_tube_axes2_y*tube_Q_t_10 +
-        v.axis_z_tube_axes2_z*tube_Q_t_9 + v.axis_y_tube_axes2_y*tube_Q_t_7 +
-        v.axis_y_tube_axes2_z*tube_Q_t_6;
-    const real tube_Q_t_13 = v.axis_z_tube_axes2_z*tube_Q_t_10 +
-        v.axis_y_tube_axes2_z*tube_Q_t_7;
-    const real tube_Q_zz = m->tube_link3_mass[i] + 2*tube_Q_t_13;
+    const real tube_Q_t_5 = v->axis_y_tube_axes2_x*tube_Q_t_2 -
+        v->axis_x_tube_axes2_x*tube_d_c_in_axes2_xy +
+        v->axis_z_tube_axes2_x*tube_d_G_in_axes2_yz;
+    const real tube_Q_t_6 = v->axis_y_tube_axes2_y*tube_Q_t_2 -
+        v->axis_x_tube_axes2_y*tube_d_c_in_axes2_xy +
+        v->axis_z_tube_axes2_y*tube_d_G_in_axes2_yz;
+    const real tube_Q_t_7 = v->axis_y_tube_axes2_z*tube_Q_t_2 -
+        v->axis_x_tube_axes2_z*tube_d_c_in_axes2_xy +
+        v->axis_z_tube_axes2_z*tube_d_G_in_axes2_yz;
+    const real tube_Q_t_8 = v->axis_z_tube_axes2_x*tube_Q_t_4 -
+        v->axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
+    const real tube_Q_t_9 = v->axis_z_tube_axes2_y*tube_Q_t_4 -
+        v->axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
+    const real tube_Q_t_10 = v->axis_z_tube_axes2_z*tube_Q_t_4 -
+        v->axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
+    const real tube_Q_t_11 = v->axis_z_tube_axes2_x*tube_Q_t_8 +
+        v->axis_y_tube_axes2_x*tube_Q_t_5;
+    v->tube_Q_xx = m->tube_link3_mass[i] + 2*tube_Q_t_11;
+    v->tube_Q_xy = v->axis_z_tube_axes2_x*tube_Q_t_9 + v->axis_z_tube_axes2_y*tube_Q_t_8 +
+        v->axis_y_tube_axes2_x*tube_Q_t_6 + v->axis_y_tube_axes2_y*tube_Q_t_5;
+    v->tube_Q_xz = v->axis_z_tube_axes2_x*tube_Q_t_10 + v->axis_z_tube_axes2_z*tube_Q_t_8 +
+        v->axis_y_tube_axes2_x*tube_Q_t_7 + v->axis_y_tube_axes2_z*tube_Q_t_5;
+    const real tube_Q_t_12 = v->axis_z_tube_axes2_y*tube_Q_t_9 +
+        v->axis_y_tube_axes2_y*tube_Q_t_6;
+    v->tube_Q_yy = m->tube_link3_mass[i] + 2*tube_Q_t_12;
+    v->tube_Q_yz = v->axis_z_tube_axes2_y*tube_Q_t_10 + v->axis_z_tube_axes2_z*tube_Q_t_9 +
+        v->axis_y_tube_axes2_y*tube_Q_t_7 + v->axis_y_tube_axes2_z*tube_Q_t_6;
+    const real tube_Q_t_13 = v->axis_z_tube_axes2_z*tube_Q_t_10 +
+        v->axis_y_tube_axes2_z*tube_Q_t_7;
+    v->tube_Q_zz = m->tube_link3_mass[i] + 2*tube_Q_t_13;
     /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
        actuation */
     const real tube_dalpha_c_m_zz =
-        v.axis_x_tube_axes2_z*(-v.axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
-        v.axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yx -
-        v.axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zx) +
-        v.axis_y_tube_axes2_z*(-v.axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
-        v.axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yy -
-        v.axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zy) +
-        v.axis_z_tube_axes2_z*(-v.axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
-        v.axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yz -
-        v.axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zz);
+        v->axis_x_tube_axes2_z*(-v->axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
+        v->axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yx -
+        v->axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zx) +
+        v->axis_y_tube_axes2_z*(-v->axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
+        v->axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yy -
+        v->axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zy) +
+        v->axis_z_tube_axes2_z*(-v->axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
+        v->axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yz -
+        v->axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zz);
     /* (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without
        actuation */
-    const real tube_d_c_m_t = -v.axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx -
-        v.axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yx -
-        v.axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zx;
-    const real tube_d_c_m_t_2 = -v.axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx -
-        v.axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yx -
-        v.axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zx;
-    const real tube_d_c_m_t_3 = -v.axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy -
-        v.axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yy -
-        v.axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zy;
-    const real tube_d_c_m_t_4 = -v.axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy -
-        v.axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yy -
-        v.axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zy;
-    const real tube_d_c_m_t_5 = -v.axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz -
-        v.axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yz -
-        v.axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zz;
-    const real tube_d_c_m_t_6 = -v.axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz -
-        v.axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yz -
-        v.axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zz;
-    const real tube_d_c_m_xx = v.axis_x_tube_axes2_x*tube_d_c_m_t +
-        v.axis_y_tube_axes2_x*tube_d_c_m_t_3 + v.axis_z_tube_axes2_x*tube_d_c_m_t_5;
-    const real tube_d_c_m_xy = v.axis_x_tube_axes2_y*tube_d_c_m_t +
-        v.axis_y_tube_axes2_y*tube_d_c_m_t_3 + v.axis_z_tube_axes2_y*tube_d_c_m_t_5;
-    const real tube_d_c_m_xz = v.axis_x_tube_axes2_z*tube_d_c_m_t +
-        v.axis_y_tube_axes2_z*tube_d_c_m_t_3 + v.axis_z_tube_axes2_z*tube_d_c_m_t_5;
-    const real tube_d_c_m_yx = v.axis_x_tube_axes2_x*tube_d_c_m_t_2 +
-        v.axis_y_tube_axes2_x*tube_d_c_m_t_4 + v.axis_z_tube_axes2_x*tube_d_c_m_t_6;
-    /* (tube-U) velocity and gravity terms of the leg force */
-    const real tube_U_x = v.axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
-        v.axis_y_tube_axes2_x*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
-    const real tube_U_y = v.axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
-        v.axis_y_tube_axes2_y*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
-    const real tube_U_z = v.axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
-        v.axis_y_tube_axes2_z*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
-    /* (M_ta) */
-    const real tube_M_ta_t = v.axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
-        v.axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yx -
-        v.axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zx;
-    const real tube_M_ta_t_2 = v.axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
-        v.axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yx -
-        v.axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zx;
-    const real tube_M_ta_t_3 = v.axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
-        v.axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yx -
-        v.axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zx;
-    const real tube_M_ta_t_4 = v.axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
-        v.axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yy -
-        v.axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zy;
-    const real tube_M_ta_t_5 = v.axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
-        v.axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yy -
-        v.axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zy;
-    const real tube_M_ta_t_6 = v.axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
-        v.axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yy -
-        v.axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zy;
-    const real tube_M_ta_t_7 = v.axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
-        v.axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yz -
-        v.axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zz;
-    const real tube_M_ta_t_8 = v.axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
-        v.axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yz -
-        v.axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zz;
-    const real tube_M_ta_t_9 = v.axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
-        v.axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yz -
-        v.axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zz;
-    const real tube_M_ta_t_10 = tube_Q_xy*v.tube_q_z;
-    const real tube_M_ta_t_11 = tube_Q_xz*v.tube_q_y;
-    const real tube_M_ta_t_12 = tube_Q_yz*v.tube_q_x;
-    const real tube_M_ta_t_13 = tube_M_ta_t_11 - v.axis_x_tube_axes2_x*tube_M_ta_t -
-        v.axis_y_tube_axes2_x*tube_M_ta_t_4 - v.axis_z_tube_axes2_x*tube_M_ta_t_7 -
+    const real tube_d_c_m_t = -v->axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx -
+        v->axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yx -
+        v->axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zx;
+    const real tube_d_c_m_t_2 = -v->axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx -
+        v->axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yx -
+        v->axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zx;
+    const real tube_d_c_m_t_3 = -v->axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy -
+        v->axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yy -
+        v->axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zy;
+    const real tube_d_c_m_t_4 = -v->axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy -
+        v->axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yy -
+        v->axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zy;
+    const real tube_d_c_m_t_5 = -v->axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz -
+        v->axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yz -
+        v->axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zz;
+    const real tube_d_c_m_t_6 = -v->axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz -
+        v->axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yz -
+        v->axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zz;
+    const real tube_d_c_m_xx = v->axis_x_tube_axes2_x*tube_d_c_m_t +
+        v->axis_y_tube_axes2_x*tube_d_c_m_t_3 + v->axis_z_tube_axes2_x*tube_d_c_m_t_5;
+    const real tube_d_c_m_xy = v->axis_x_tube_axes2_y*tube_d_c_m_t +
+        v->axis_y_tube_axes2_y*tube_d_c_m_t_3 + v->axis_z_tube_axes2_y*tube_d_c_m_t_5;
+    const real tube_d_c_m_xz = v->axis_x_tube_axes2_z*tube_d_c_m_t +
+        v->axis_y_tube_axes2_z*tube_d_c_m_t_3 + v->axis_z_tube_axes2_z*tube_d_c_m_t_5;
+    const real tube_d_c_m_yx = v->axis_x_tube_axes2_x*tube_d_c_m_t_2 +
+        v->axis_y_tube_axes2_x*tube_d_c_m_t_4 + v->axis_z_tube_axes2_x*tube_d_c_m_t_6;
+    /* (M_ta) coupling block of M */
+    const real tube_M_ta_t = v->axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
+        v->axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yx -
+        v->axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zx;
+    const real tube_M_ta_t_2 = v->axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
+        v->axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yx -
+        v->axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zx;
+    const real tube_M_ta_t_3 = v->axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
+        v->axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yx -
+        v->axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zx;
+    const real tube_M_ta_t_4 = v->axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
+        v->axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yy -
+        v->axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zy;
+    const real tube_M_ta_t_5 = v->axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
+        v->axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yy -
+        v->axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zy;
+    const real tube_M_ta_t_6 = v->axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
+        v->axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yy -
+        v->axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zy;
+    const real tube_M_ta_t_7 = v->axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
+        v->axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yz -
+        v->axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zz;
+    const real tube_M_ta_t_8 = v->axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
+        v->axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yz -
+        v->axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zz;
+    const real tube_M_ta_t_9 = v->axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
+        v->axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yz -
+        v->axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zz;
+    const real tube_M_ta_t_10 = v->tube_Q_xy*v->tube_q_z;
+    const real tube_M_ta_t_11 = v->tube_Q_xz*v->tube_q_y;
+    const real tube_M_ta_t_12 = v->tube_Q_yz*v->tube_q_x;
+    v->tube_M_ta_t_13 = tube_M_ta_t_11 - v->axis_x_tube_axes2_x*tube_M_ta_t -
+        v->axis_y_tube_axes2_x*tube_M_ta_t_4 - v->axis_z_tube_axes2_x*tube_M_ta_t_7 -
         tube_M_ta_t_10;
-    const real tube_M_ta_t_14 = tube_Q_xx*v.tube_q_z - v.axis_x_tube_axes2_y*tube_M_ta_t -
-        v.axis_y_tube_axes2_y*tube_M_ta_t_4 - v.axis_z_tube_axes2_y*tube_M_ta_t_7 -
-        tube_Q_xz*v.tube_q_x;
-    const real tube_M_ta_t_15 = tube_Q_xy*v.tube_q_x - v.axis_x_tube_axes2_z*tube_M_ta_t -
-        v.axis_y_tube_axes2_z*tube_M_ta_t_4 - v.axis_z_tube_axes2_z*tube_M_ta_t_7 -
-        tube_Q_xx*v.tube_q_y;
-    const real tube_M_ta_t_16 = tube_Q_yz*v.tube_q_y - v.axis_x_tube_axes2_x*tube_M_ta_t_2 -
-        v.axis_y_tube_axes2_x*tube_M_ta_t_5 - v.axis_z_tube_axes2_x*tube_M_ta_t_8 -
-        tube_Q_yy*v.tube_q_z;
-    const real tube_M_ta_t_17 = tube_M_ta_t_10 - v.axis_x_tube_axes2_y*tube_M_ta_t_2 -
-        v.axis_y_tube_axes2_y*tube_M_ta_t_5 - v.axis_z_tube_axes2_y*tube_M_ta_t_8 -
+    v->tube_M_ta_t_14 = v->tube_Q_xx*v->tube_q_z - v->axis_x_tube_axes2_y*tube_M_ta_t -
+        v->axis_y_tube_axes2_y*tube_M_ta_t_4 - v->axis_z_tube_axes2_y*tube_M_ta_t_7 -
+        v->tube_Q_xz*v->tube_q_x;
+    v->tube_M_ta_t_15 = v->tube_Q_xy*v->tube_q_x - v->axis_x_tube_axes2_z*tube_M_ta_t -
+        v->axis_y_tube_axes2_z*tube_M_ta_t_4 - v->axis_z_tube_axes2_z*tube_M_ta_t_7 -
+        v->tube_Q_xx*v->tube_q_y;
+    v->tube_M_ta_t_16 = v->tube_Q_yz*v->tube_q_y - v->axis_x_tube_axes2_x*tube_M_ta_t_2 -
+        v->axis_y_tube_axes2_x*tube_M_ta_t_5 - v->axis_z_tube_axes2_x*tube_M_ta_t_8 -
+        v->tube_Q_yy*v->tube_q_z;
+    v->tube_M_ta_t_17 = tube_M_ta_t_10 - v->axis_x_tube_axes2_y*tube_M_ta_t_2 -
+        v->axis_y_tube_axes2_y*tube_M_ta_t_5 - v->axis_z_tube_axes2_y*tube_M_ta_t_8 -
         tube_M_ta_t_12;
-    const real tube_M_ta_t_18 = tube_Q_yy*v.tube_q_x - v.axis_x_tube_axes2_z*tube_M_ta_t_2 -
-        v.axis_y_tube_axes2_z*tube_M_ta_t_5 - v.axis_z_tube_axes2_z*tube_M_ta_t_8 -
-        tube_Q_xy*v.tube_q_y;
-    const real tube_M_ta_t_19 = tube_Q_zz*v.tube_q_y - v.axis_x_tube_axes2_x*tube_M_ta_t_3 -
-        v.axis_y_tube_axes2_x*tube_M_ta_t_6 - v.axis_z_tube_axes2_x*tube_M_ta_t_9 -
-        tube_Q_yz*v.tube_q_z;
-    const real tube_M_ta_t_20 = tube_Q_xz*v.tube_q_z - v.axis_x_tube_axes2_y*tube_M_ta_t_3 -
-        v.axis_y_tube_axes2_y*tube_M_ta_t_6 - v.axis_z_tube_axes2_y*tube_M_ta_t_9 -
-        tube_Q_zz*v.tube_q_x;
-    const real tube_M_ta_t_21 = tube_M_ta_t_12 - v.axis_x_tube_axes2_z*tube_M_ta_t_3 -
-        v.axis_y_tube_axes2_z*tube_M_ta_t_6 - v.axis_z_tube_axes2_z*tube_M_ta_t_9 -
+    v->tube_M_ta_t_18 = v->tube_Q_yy*v->tube_q_x - v->axis_x_tube_axes2_z*tube_M_ta_t_2 -
+        v->axis_y_tube_axes2_z*tube_M_ta_t_5 - v->axis_z_tube_axes2_z*tube_M_ta_t_8 -
+        v->tube_Q_xy*v->tube_q_y;
+    v->tube_M_ta_t_19 = v->tube_Q_zz*v->tube_q_y - v->axis_x_tube_axes2_x*tube_M_ta_t_3 -
+        v->axis_y_tube_axes2_x*tube_M_ta_t_6 - v->axis_z_tube_axes2_x*tube_M_ta_t_9 -
+        v->tube_Q_yz*v->tube_q_z;
+    v->tube_M_ta_t_20 = v->tube_Q_xz*v->tube_q_z - v->axis_x_tube_axes2_y*tube_M_ta_t_3 -
+        v->axis_y_tube_axes2_y*tube_M_ta_t_6 - v->axis_z_tube_axes2_y*tube_M_ta_t_9 -
+        v->tube_Q_zz*v->tube_q_x;
+    v->tube_M_ta_t_21 = tube_M_ta_t_12 - v->axis_x_tube_axes2_z*tube_M_ta_t_3 -
+        v->axis_y_tube_axes2_z*tube_M_ta_t_6 - v->axis_z_tube_axes2_z*tube_M_ta_t_9 -
         tube_M_ta_t_11;
-    /* (M_aa) */
-    const real tube_M_aa_t = -v.axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
-        v.axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yx -
-        v.axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zx;
-    const real tube_M_aa_t_2 = -v.axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
-        v.axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yx -
-        v.axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zx;
-    const real tube_M_aa_t_3 = -v.axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
-        v.axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yy -
-        v.axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zy;
-    const real tube_M_aa_t_4 = -v.axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
-        v.axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yy -
-        v.axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zy;
-    const real tube_M_aa_t_5 = -v.axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
-        v.axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yz -
-        v.axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zz;
-    const real tube_M_aa_t_6 = -v.axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
-        v.axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yz -
-        v.axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zz;
-    const real tube_M_aa_t_7 = -v.axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx -
-        v.axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yx -
-        v.axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zx;
-    const real tube_M_aa_t_8 = -v.axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy -
-        v.axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yy -
-        v.axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zy;
-    const real tube_M_aa_t_9 = -v.axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
-        v.axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yz -
-        v.axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zz;
-    const real tube_M_aa_t_10 = tube_d_c_m_xy*v.tube_q_z - v.axis_x_tube_axes2_x*tube_M_aa_t -
-        v.axis_y_tube_axes2_x*tube_M_aa_t_3 - v.axis_z_tube_axes2_x*tube_M_aa_t_5 -
-        tube_d_c_m_xz*v.tube_q_y + tube_M_ta_t_19*v.tube_q_y - tube_M_ta_t_16*v.tube_q_z;
-    const real tube_M_aa_t_11 = tube_d_c_m_xz*v.tube_q_x - v.axis_x_tube_axes2_y*tube_M_aa_t -
-        v.axis_y_tube_axes2_y*tube_M_aa_t_3 - v.axis_z_tube_axes2_y*tube_M_aa_t_5 -
-        tube_d_c_m_xx*v.tube_q_z + tube_M_ta_t_20*v.tube_q_y - tube_M_ta_t_17*v.tube_q_z;
-    const real tube_M_aa_t_12 = tube_d_c_m_xx*v.tube_q_y - v.axis_x_tube_axes2_z*tube_M_aa_t -
-        v.axis_y_tube_axes2_z*tube_M_aa_t_3 - v.axis_z_tube_axes2_z*tube_M_aa_t_5 -
-        tube_d_c_m_xy*v.tube_q_x + tube_M_ta_t_21*v.tube_q_y - tube_M_ta_t_18*v.tube_q_z;
-    const real tube_M_aa_t_13 = v.tube_q_x*(v.axis_x_tube_axes2_z*tube_d_c_m_t_2 +
-        v.axis_y_tube_axes2_z*tube_d_c_m_t_4 + v.axis_z_tube_axes2_z*tube_d_c_m_t_6) -
-        v.axis_x_tube_axes2_y*tube_M_aa_t_2 - v.axis_y_tube_axes2_y*tube_M_aa_t_4 -
-        v.axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_d_c_m_yx*v.tube_q_z +
-        tube_M_ta_t_14*v.tube_q_z - tube_M_ta_t_20*v.tube_q_x;
-    const real tube_M_aa_t_14 = tube_d_c_m_yx*v.tube_q_y - v.axis_x_tube_axes2_z*tube_M_aa_t_2
-        - v.axis_y_tube_axes2_z*tube_M_aa_t_4 - v.axis_z_tube_axes2_z*tube_M_aa_t_6 -
-        v.tube_q_x*(v.axis_x_tube_axes2_y*tube_d_c_m_t_2 +
-        v.axis_y_tube_axes2_y*tube_d_c_m_t_4 + v.axis_z_tube_axes2_y*tube_d_c_m_t_6) +
-        tube_M_ta_t_15*v.tube_q_z - tube_M_ta_t_21*v.tube_q_x;
-    const real tube_M_aa_t_15 = v.tube_q_y*(v.axis_x_tube_axes2_x*tube_M_aa_t_7 +
-        v.axis_y_tube_axes2_x*tube_M_aa_t_8 + v.axis_z_tube_axes2_x*tube_M_aa_t_9) -
-        v.tube_q_x*(v.axis_x_tube_axes2_y*tube_M_aa_t_7 + v.axis_y_tube_axes2_y*tube_M_aa_t_8
-        + v.axis_z_tube_axes2_y*tube_M_aa_t_9) - tube_dalpha_c_m_zz +
-        tube_M_ta_t_18*v.tube_q_x - tube_M_ta_t_15*v.tube_q_y;
-    /* (Z_a) */
-    const real tube_Z_a_t = v.axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
-        v.axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
-        v.axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z + tube_U_z*v.tube_q_y -
-        tube_U_y*v.tube_q_z;
-    const real tube_Z_a_t_2 = v.axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
-        v.axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y +
-        v.axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z + tube_U_x*v.tube_q_z -
-        tube_U_z*v.tube_q_x;
-    const real tube_Z_a_t_3 = v.axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
-        v.axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y +
-        v.axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + tube_U_y*v.tube_q_x -
-        tube_U_x*v.tube_q_y;
+    /* (M_aa) rotational block of M */
+    const real tube_M_aa_t = -v->axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
+        v->axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yx -
+        v->axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zx;
+    const real tube_M_aa_t_2 = -v->axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
+        v->axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yx -
+        v->axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zx;
+    const real tube_M_aa_t_3 = -v->axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
+        v->axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yy -
+        v->axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zy;
+    const real tube_M_aa_t_4 = -v->axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
+        v->axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yy -
+        v->axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zy;
+    const real tube_M_aa_t_5 = -v->axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
+        v->axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yz -
+        v->axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zz;
+    const real tube_M_aa_t_6 = -v->axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
+        v->axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yz -
+        v->axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zz;
+    const real tube_M_aa_t_7 = -v->axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx -
+        v->axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yx -
+        v->axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zx;
+    const real tube_M_aa_t_8 = -v->axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy -
+        v->axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yy -
+        v->axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zy;
+    const real tube_M_aa_t_9 = -v->axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
+        v->axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yz -
+        v->axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zz;
+    v->tube_M_aa_t_10 = tube_d_c_m_xy*v->tube_q_z - v->axis_x_tube_axes2_x*tube_M_aa_t -
+        v->axis_y_tube_axes2_x*tube_M_aa_t_3 - v->axis_z_tube_axes2_x*tube_M_aa_t_5 -
+        tube_d_c_m_xz*v->tube_q_y + v->tube_M_ta_t_19*v->tube_q_y -
+        v->tube_M_ta_t_16*v->tube_q_z;
+    v->tube_M_aa_t_11 = tube_d_c_m_xz*v->tube_q_x - v->axis_x_tube_axes2_y*tube_M_aa_t -
+        v->axis_y_tube_axes2_y*tube_M_aa_t_3 - v->axis_z_tube_axes2_y*tube_M_aa_t_5 -
+        tube_d_c_m_xx*v->tube_q_z + v->tube_M_ta_t_20*v->tube_q_y -
+        v->tube_M_ta_t_17*v->tube_q_z;
+    v->tube_M_aa_t_12 = tube_d_c_m_xx*v->tube_q_y - v->axis_x_tube_axes2_z*tube_M_aa_t -
+        v->axis_y_tube_axes2_z*tube_M_aa_t_3 - v->axis_z_tube_axes2_z*tube_M_aa_t_5 -
+        tube_d_c_m_xy*v->tube_q_x + v->tube_M_ta_t_21*v->tube_q_y -
+        v->tube_M_ta_t_18*v->tube_q_z;
+    v->tube_M_aa_t_13 = v->tube_q_x*(v->axis_x_tube_axes2_z*tube_d_c_m_t_2 +
+        v->axis_y_tube_axes2_z*tube_d_c_m_t_4 + v->axis_z_tube_axes2_z*tube_d_c_m_t_6) -
+        v->axis_x_tube_axes2_y*tube_M_aa_t_2 - v->axis_y_tube_axes2_y*tube_M_aa_t_4 -
+        v->axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_d_c_m_yx*v->tube_q_z +
+        v->tube_M_ta_t_14*v->tube_q_z - v->tube_M_ta_t_20*v->tube_q_x;
+    v->tube_M_aa_t_14 = tube_d_c_m_yx*v->tube_q_y - v->axis_x_tube_axes2_z*tube_M_aa_t_2 -
+        v->axis_y_tube_axes2_z*tube_M_aa_t_4 - v->axis_z_tube_axes2_z*tube_M_aa_t_6 -
+        v->tube_q_x*(v->axis_x_tube_axes2_y*tube_d_c_m_t_2 +
+        v->axis_y_tube_axes2_y*tube_d_c_m_t_4 + v->axis_z_tube_axes2_y*tube_d_c_m_t_6) +
+        v->tube_M_ta_t_15*v->tube_q_z - v->tube_M_ta_t_21*v->tube_q_x;
+    v->tube_M_aa_t_15 = v->tube_q_y*(v->axis_x_tube_axes2_x*tube_M_aa_t_7 +
+        v->axis_y_tube_axes2_x*tube_M_aa_t_8 + v->axis_z_tube_axes2_x*tube_M_aa_t_9) -
+        v->tube_q_x*(v->axis_x_tube_axes2_y*tube_M_aa_t_7 +
+        v->axis_y_tube_axes2_y*tube_M_aa_t_8 + v->axis_z_tube_axes2_y*tube_M_aa_t_9) -
+        tube_dalpha_c_m_zz + v->tube_M_ta_t_18*v->tube_q_x - v->tube_M_ta_t_15*v->tube_q_y;
+}
+
+INLINE void stage_tube_Z_dynamics(const prepared *m, size_t i, values_tube *v)
+{
+    /* (tube-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real tube_qdd_1_o_t = R(1.35)*v->tube_nu_1;
+    const real tube_qdd_1_o_t_2 = R(1.35)*v->tube_nu_2;
+    const real tube_qdd_1_o_t_3 = R(1.35)*v->tube_nu_3;
+    const real tube_qdd_1_o = v->inv_tube_w_1_t_75*(v->tube_rel_o_in_axes2_y*v->tube_w_1_t_76
+        - v->tube_m2_w_1_t*tube_qdd_1_o_t_2 + v->tube_m1_w_1_t*tube_qdd_1_o_t +
+        v->tube_m3_w_1_t*tube_qdd_1_o_t_3 + v->tube_rel_o_in_axes2_z*v->tube_w_1_t_77);
+    /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
+    const real tube_qdd_2_o_t = v->inv_tube_w_1_t_63*(tube_qdd_1_o_t_2*v->tube_w_1_t_67 +
+        v->tube_rel_o_in_axes2_y*v->tube_w_1_t_64 + tube_qdd_1_o_t*v->tube_w_1_t_66 +
+        tube_qdd_1_o_t_3*v->tube_w_1_t_68 + v->tube_rel_o_in_axes2_z*v->tube_w_1_t_65 -
+        tube_qdd_1_o*v->tube_w_1_t_69);
+    const real tube_qdd_2_o_t_2 =
+        v->inv_tube_w_1_t_49*(v->tube_rel_o_in_axes2_y*v->tube_w_1_t_50 +
+        v->inv_tube_w_1_t_49*v->tube_rel_o_in_axes2_z + tube_qdd_1_o_t*v->tube_w_1_t_51 +
+        tube_qdd_1_o_t_3*v->tube_w_1_t_52 + tube_qdd_1_o*v->tube_w_1_t_58 +
+        tube_qdd_2_o_t*v->tube_w_1_t_53);
+    const real tube_qdd_2_o_t_3 = v->tube_rel_o_in_axes2_y*v->tube_w_1_t_14 +
+        tube_qdd_1_o_t*v->tube_w_1_t_15 + tube_qdd_1_o_t_3*v->tube_w_1_t_16 -
+        tube_qdd_1_o*v->tube_w_1_t_29 - tube_qdd_2_o_t*v->tube_w_1_t_25 +
+        tube_qdd_2_o_t_2*v->tube_w_1_t_21 +
+        v->inv_tube_w_1_t_33*v->tube_w_1_t_17*(v->tube_rel_o_in_axes2_y*v->tube_w_1_t_34 +
+        tube_qdd_1_o_t*v->tube_w_1_t_35 + tube_qdd_1_o_t_3*v->tube_w_1_t_36 +
+        tube_qdd_1_o*v->tube_w_1_t_45 + tube_qdd_2_o_t*v->tube_w_1_t_41 -
+        tube_qdd_2_o_t_2*v->tube_w_1_t_37);
+    const real tube_qdd_2_o = v->inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
+    /* (tube-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real tube_alpha_1_o_in_axes2_x = v->tube_e_1_in_axes2_x*tube_qdd_1_o;
+    const real tube_alpha_1_o_in_axes2_y = -v->tube_c_2*tube_qdd_1_o;
+    /* (tube-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real tube_alpha_2_o_in_axes2_x = v->tube_W_2_in_axes2_yz +
+        tube_alpha_1_o_in_axes2_x;
+    const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y -
+        v->tube_W_2_in_axes2_xz;
+    /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real tube_B_2_o_in_axes2_xy = v->tube_W_2_in_axes2_xy - tube_qdd_2_o;
+    const real tube_B_2_o_in_axes2_yx = v->tube_W_2_in_axes2_xy + tube_qdd_2_o;
+    const real tube_B_2_o_in_axes2_zx = v->tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
+    const real tube_B_2_o_in_axes2_zy = v->tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
+    /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real tube_acc_3_o_in_axes2_x = v->axis_x_tube_axes2_x*v->tube_u_1_x -
+        v->tube_g_in_axes2_x + v->axis_x_tube_axes2_y*v->tube_u_1_y +
+        v->axis_x_tube_axes2_z*v->tube_u_1_z;
+    const real tube_acc_3_o_in_axes2_y = v->tube_bias_t_4 - v->tube_g_in_axes2_y -
+        v->tube_bias_t_2 + v->tube_q_3*tube_qdd_2_o;
+    const real tube_acc_3_o_in_axes2_z = v->tube_bias_t - v->tube_g_in_axes2_z -
+        v->tube_bias_t_5 - tube_alpha_2_o_in_axes2_y*v->tube_q_3;
+    /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
+    const real tube_f_3_o_in_axes2_x = tube_acc_3_o_in_axes2_x*m->tube_link3_mass[i] -
+        v->tube_f_3_t_2 + tube_alpha_1_o_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
+        tube_B_2_o_in_axes2_xy*m->tube_h_3_in_spec2_z[i];
+    const real tube_f_3_o_in_axes2_y = v->tube_f_3_t_3 -
+        tube_alpha_1_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
+        tube_B_2_o_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
+        tube_acc_3_o_in_axes2_y*m->tube_link3_mass[i];
+    const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
+        v->tube_f_3_t_4 + tube_acc_3_o_in_axes2_z*m->tube_link3_mass[i] -
+        tube_B_2_o_in_axes2_zy*m->tube_h_3_in_spec2_z[i];
+    /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real tube_mu_2_o_in_axes2_x = v->tube_mu_2_t_4 + v->tube_mu_2_t +
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_x +
+        tube_B_2_o_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] -
+        tube_B_2_o_in_axes2_zx*m->tube_J_group_2_in_axes2_xy[i] -
+        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_z[i] +
+        tube_B_2_o_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] -
+        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_y[i];
+    const real tube_mu_2_o_in_axes2_y = tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] -
+        v->tube_mu_2_t_5 - v->tube_mu_2_t_2 +
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_y +
+        tube_B_2_o_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] -
+        tube_B_2_o_in_axes2_zx*m->tube_Sigma_2_in_axes2_xx[i] -
+        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_x[i] -
+        tube_B_2_o_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i];
+    const real tube_mu_2_o_in_axes2_z = tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_z[i] -
+        v->tube_mu_2_t_6 + v->tube_mu_2_t_3 +
+        m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_o_in_axes2_x +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_o_in_axes2_y +
+        tube_B_2_o_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i] +
+        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_x[i] -
+        tube_B_2_o_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i];
+    /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
+        tube_f_3_o_in_axes2_z*v->tube_q_3;
+    const real tube_N_2_o_in_axes2_z = tube_f_3_o_in_axes2_y*v->tube_q_3 +
+        tube_mu_2_o_in_axes2_z;
+    /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_o_t = v->inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
+    const real tube_G_o_t_2 = v->inv_tube_w_1_t_33*tube_G_o_t*v->tube_w_1_t_17;
+    const real tube_G_o_t_3 = v->inv_tube_w_1_t_49*(tube_G_o_t*v->tube_w_1_t_21 -
+        tube_G_o_t_2*v->tube_w_1_t_37);
+    const real tube_G_o_t_4 = v->inv_tube_w_1_t_63*(tube_G_o_t_2*v->tube_w_1_t_41 -
+        tube_G_o_t*v->tube_w_1_t_25 + tube_G_o_t_3*v->tube_w_1_t_53);
+    const real tube_G_o_t_5 = v->inv_tube_w_1_t_75*(tube_N_2_o_in_axes2_y*v->tube_c_2 -
+        v->tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x + tube_G_o_t*v->tube_w_1_t_29 -
+        tube_G_o_t_2*v->tube_w_1_t_45 - tube_G_o_t_3*v->tube_w_1_t_58 +
+        tube_G_o_t_4*v->tube_w_1_t_69);
+    const real tube_G_o_in_axes2_y = tube_G_o_t*v->tube_w_1_t_14 +
+        tube_G_o_t_2*v->tube_w_1_t_34 + tube_G_o_t_3*v->tube_w_1_t_50 +
+        tube_G_o_t_4*v->tube_w_1_t_64 - tube_G_o_t_5*v->tube_w_1_t_76;
+    const real tube_G_o_in_axes2_z = v->inv_tube_w_1_t_49*tube_G_o_t_3 +
+        tube_G_o_t_4*v->tube_w_1_t_65 - tube_G_o_t_5*v->tube_w_1_t_77;
+    /* (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_m1_o_t = tube_G_o_t*v->tube_w_1_t_15 + tube_G_o_t_2*v->tube_w_1_t_35 +
+        tube_G_o_t_3*v->tube_w_1_t_51 + tube_G_o_t_4*v->tube_w_1_t_66 -
+        tube_G_o_t_5*v->tube_m1_w_1_t;
+    const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
+    /* (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_m2_o_t = tube_G_o_t_4*v->tube_w_1_t_67 + tube_G_o_t_5*v->tube_m2_w_1_t;
+    const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
+    /* (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_m3_o_t = tube_G_o_t*v->tube_w_1_t_16 + tube_G_o_t_2*v->tube_w_1_t_36 +
+        tube_G_o_t_3*v->tube_w_1_t_52 + tube_G_o_t_4*v->tube_w_1_t_68 -
+        tube_G_o_t_5*v->tube_m3_w_1_t;
+    const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
+    /* (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v->tube_end_p2_in_axes2_y -
+        tube_G_m3_o*v->tube_end_p3_in_axes2_z;
+    const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v->tube_n_m2_in_axes2_y -
+        tube_G_m1_o*v->tube_end_p1_in_axes2_z;
+    const real tube_G_m_o_in_axes2_z = tube_G_m1_o*v->tube_n_m1_in_axes2_z +
+        tube_G_m3_o*v->tube_n_m3_in_axes2_z;
+    /* (tube-U) velocity and gravity terms of the leg force */
+    v->tube_U_x = v->axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
+        v->axis_y_tube_axes2_x*tube_G_o_in_axes2_y +
+        v->axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
+    v->tube_U_y = v->axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
+        v->axis_y_tube_axes2_y*tube_G_o_in_axes2_y +
+        v->axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
+    v->tube_U_z = v->axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
+        v->axis_y_tube_axes2_z*tube_G_o_in_axes2_y +
+        v->axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
+    /* (Z_a) rotational part of Z */
+    v->tube_Z_a_t = v->axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
+        v->axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
+        v->axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z + v->tube_U_z*v->tube_q_y -
+        v->tube_U_y*v->tube_q_z;
+    v->tube_Z_a_t_2 = v->axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
+        v->axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y +
+        v->axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z + v->tube_U_x*v->tube_q_z -
+        v->tube_U_z*v->tube_q_x;
+    v->tube_Z_a_t_3 = v->axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
+        v->axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y +
+        v->axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + v->tube_U_y*v->tube_q_x -
+        v->tube_U_x*v->tube_q_y;
+}
+
+INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v)
+{
+    /* (tube-alpha_1) angular acceleration of link 1 */
+    const real tube_alpha_1_in_axes2_x = v->tube_e_1_in_axes2_x*v->tube_qdd_1;
+    const real tube_alpha_1_in_axes2_y = -v->tube_c_2*v->tube_qdd_1;
+    /* (tube-alpha_2) angular acceleration of link 2 */
+    const real tube_alpha_2_in_axes2_x = v->tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x;
+    const real tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - v->tube_W_2_in_axes2_xz;
+    /* (tube-B_2) acceleration tensor of link 2 */
+    const real tube_B_2_in_axes2_xy = v->tube_W_2_in_axes2_xy - v->tube_qdd_2;
+    const real tube_B_2_in_axes2_yx = v->tube_W_2_in_axes2_xy + v->tube_qdd_2;
+    const real tube_B_2_in_axes2_zx = v->tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y;
+    const real tube_B_2_in_axes2_zy = v->tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x;
+    /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real tube_acc_3_in_axes2_x = v->tube_S_ddot_in_axes2_x - v->tube_g_in_axes2_x;
+    const real tube_acc_3_in_axes2_y = v->tube_bias_t_4 - v->tube_g_in_axes2_y -
+        v->tube_bias_t_2 + v->tube_q_3*v->tube_qdd_2;
+    const real tube_acc_3_in_axes2_z = v->tube_bias_t - v->tube_g_in_axes2_z -
+        v->tube_bias_t_5 - tube_alpha_2_in_axes2_y*v->tube_q_3;
+    /* (tube-f_3) inertia force of link 3 less its weight */
+    const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*m->tube_link3_mass[i] -
+        v->tube_f_3_t_2 + tube_alpha_1_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
+        tube_B_2_in_axes2_xy*m->tube_h_3_in_spec2_z[i];
+    const real tube_f_3_in_axes2_y = v->tube_f_3_t_3 -
+        tube_alpha_1_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
+        tube_B_2_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
+        tube_acc_3_in_axes2_y*m->tube_link3_mass[i];
+    const real tube_f_3_in_axes2_z = tube_B_2_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
+        v->tube_f_3_t_4 + tube_acc_3_in_axes2_z*m->tube_link3_mass[i] -
+        tube_B_2_in_axes2_zy*m->tube_h_3_in_spec2_z[i];
+    /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real tube_mu_2_in_axes2_x = v->tube_mu_2_t_4 + v->tube_mu_2_t +
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_in_axes2_x +
+        tube_B_2_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] -
+        tube_B_2_in_axes2_zx*m->tube_J_group_2_in_axes2_xy[i] -
+        tube_acc_3_in_axes2_z*m->tube_h_3_in_spec2_z[i] +
+        tube_B_2_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] -
+        tube_acc_3_in_axes2_y*m->tube_h_3_in_spec2_y[i];
+    const real tube_mu_2_in_axes2_y = tube_acc_3_in_axes2_x*m->tube_h_3_in_spec2_y[i] -
+        v->tube_mu_2_t_5 - v->tube_mu_2_t_2 +
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_in_axes2_y +
+        tube_B_2_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] -
+        tube_B_2_in_axes2_zx*m->tube_Sigma_2_in_axes2_xx[i] -
+        tube_acc_3_in_axes2_z*m->tube_h_3_in_spec2_x[i] -
+        tube_B_2_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i];
+    const real tube_mu_2_in_axes2_z = tube_acc_3_in_axes2_x*m->tube_h_3_in_spec2_z[i] -
+        v->tube_mu_2_t_6 + v->tube_mu_2_t_3 +
+        m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_in_axes2_x +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_in_axes2_y +
+        tube_B_2_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i] +
+        tube_acc_3_in_axes2_y*m->tube_h_3_in_spec2_x[i] -
+        tube_B_2_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i];
+    /* (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
+       left out */
+    const real tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*v->tube_q_3;
+    const real tube_N_2_in_axes2_z = tube_f_3_in_axes2_y*v->tube_q_3 + tube_mu_2_in_axes2_z;
+    /* (tube-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real tube_G_t = v->inv_tube_w_1_t_13*tube_N_2_in_axes2_z;
+    const real tube_G_t_2 = v->inv_tube_w_1_t_33*tube_G_t*v->tube_w_1_t_17;
+    const real tube_G_t_3 = v->inv_tube_w_1_t_49*(tube_G_t*v->tube_w_1_t_21 -
+        tube_G_t_2*v->tube_w_1_t_37);
+    const real tube_G_t_4 = v->inv_tube_w_1_t_63*(tube_G_t_2*v->tube_w_1_t_41 -
+        tube_G_t*v->tube_w_1_t_25 + tube_G_t_3*v->tube_w_1_t_53);
+    const real tube_G_t_5 = v->inv_tube_w_1_t_75*(tube_N_2_in_axes2_y*v->tube_c_2 -
+        v->tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x + tube_G_t*v->tube_w_1_t_29 -
+        tube_G_t_2*v->tube_w_1_t_45 - tube_G_t_3*v->tube_w_1_t_58 +
+        tube_G_t_4*v->tube_w_1_t_69);
+    const real tube_G_in_axes2_y = tube_G_t*v->tube_w_1_t_14 + tube_G_t_2*v->tube_w_1_t_34 +
+        tube_G_t_3*v->tube_w_1_t_50 + tube_G_t_4*v->tube_w_1_t_64 -
+        tube_G_t_5*v->tube_w_1_t_76;
+    const real tube_G_in_axes2_z = v->inv_tube_w_1_t_49*tube_G_t_3 +
+        tube_G_t_4*v->tube_w_1_t_65 - tube_G_t_5*v->tube_w_1_t_77;
+    /* (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
+       all degrees of freedom */
+    const real tube_G_m1_t = tube_G_t*v->tube_w_1_t_15 + tube_G_t_2*v->tube_w_1_t_35 +
+        tube_G_t_3*v->tube_w_1_t_51 + tube_G_t_4*v->tube_w_1_t_66 -
+        tube_G_t_5*v->tube_m1_w_1_t;
+    const real tube_G_m1 = R(1.35)*tube_G_m1_t;
+    /* (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
+       all degrees of freedom */
+    const real tube_G_m2_t = tube_G_t_4*v->tube_w_1_t_67 + tube_G_t_5*v->tube_m2_w_1_t;
+    const real tube_G_m2 = R(1.35)*tube_G_m2_t;
+    /* (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along
+       all degrees of freedom */
+    const real tube_G_m3_t = tube_G_t*v->tube_w_1_t_16 + tube_G_t_2*v->tube_w_1_t_36 +
+        tube_G_t_3*v->tube_w_1_t_52 + tube_G_t_4*v->tube_w_1_t_68 -
+        tube_G_t_5*v->tube_m3_w_1_t;
+    const real tube_G_m3 = R(1.35)*tube_G_m3_t;
+    /* (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real tube_G_m_in_axes2_x = -tube_G_m2*v->tube_end_p2_in_axes2_y -
+        tube_G_m3*v->tube_end_p3_in_axes2_z;
+    const real tube_G_m_in_axes2_y = tube_G_m2*v->tube_n_m2_in_axes2_y -
+        tube_G_m1*v->tube_end_p1_in_axes2_z;
+    const real tube_G_m_in_axes2_z = tube_G_m1*v->tube_n_m1_in_axes2_z +
+        tube_G_m3*v->tube_n_m3_in_axes2_z;
+    /* (tube-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->tube_c_x = -v->axis_x_tube_axes2_x*tube_f_3_in_axes2_x -
+        v->axis_y_tube_axes2_x*tube_G_in_axes2_y - v->axis_z_tube_axes2_x*tube_G_in_axes2_z;
+    v->tube_c_y = -v->axis_x_tube_axes2_y*tube_f_3_in_axes2_x -
+        v->axis_y_tube_axes2_y*tube_G_in_axes2_y - v->axis_z_tube_axes2_y*tube_G_in_axes2_z;
+    v->tube_c_z = -v->axis_x_tube_axes2_z*tube_f_3_in_axes2_x -
+        v->axis_y_tube_axes2_z*tube_G_in_axes2_y - v->axis_z_tube_axes2_z*tube_G_in_axes2_z;
+    /* (tube-c_m) moment of the leg on the platform without actuation */
+    v->tube_c_m_x = -v->axis_x_tube_axes2_x*tube_G_m_in_axes2_x -
+        v->axis_y_tube_axes2_x*tube_G_m_in_axes2_y -
+        v->axis_z_tube_axes2_x*tube_G_m_in_axes2_z;
+    v->tube_c_m_y = -v->axis_x_tube_axes2_y*tube_G_m_in_axes2_x -
+        v->axis_y_tube_axes2_y*tube_G_m_in_axes2_y -
+        v->axis_z_tube_axes2_y*tube_G_m_in_axes2_z;
+    v->tube_c_m_z = -v->axis_x_tube_axes2_z*tube_G_m_in_axes2_x -
+        v->axis_y_tube_axes2_z*tube_G_m_in_axes2_y -
+        v->axis_z_tube_axes2_z*tube_G_m_in_axes2_z;
+}
+
+typedef struct {
+    real ups_q_x, ups_q_y, ups_q_z, ups_root_1_t, ups_root_1, inv_ups_root_1, ups_c_1, ups_s_1,
+        ups_q_3_t, ups_q_3, inv_ups_q_3, ups_c_2, ups_e_1_in_axes2_x, axis_x_ups_axes2_x,
+        axis_x_ups_axes2_y, axis_x_ups_axes2_z, axis_z_ups_axes2_x, axis_z_ups_axes2_y,
+        axis_z_ups_axes2_z, axis_y_ups_axes2_x, axis_y_ups_axes2_y, axis_y_ups_axes2_z,
+        ups_g_in_axes2_z, ups_g_in_axes2_x, ups_g_in_axes2_y, ups_mu_2_t_5, ups_mu_2_t_6,
+        ups_mu_2_t_7, ups_H_a_3_x, ups_H_a_3_y, ups_H_a_3_z, ups_S_dot_t, ups_S_dot_t_2,
+        ups_S_dot_t_3, ups_S_dot_in_axes2_x, ups_qd_1, ups_qd_2, ups_W_2_in_axes2_yz,
+        ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xx, ups_W_2_in_axes2_xy, ups_bias_in_axes2_z,
+        ups_qdd_2_t, ups_phi_3_t, ups_mu_2_t_2, ups_mu_2_t_3, ups_mu_2_t_4, ups_c_t, ups_c_t_2,
+        ups_S_ddot_in_axes2_x, ups_S_ddot_t, ups_S_ddot_t_2, ups_S_ddot_t_3, ups_S_ddot_in_axes2_z,
+        ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz,
+        ups_Q_zz, ups_M_ta_t_3, ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
+        ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2, ups_M_aa_t_3,
+        ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2,
+        ups_Z_a_t_3, ups_S_ddot_in_axes2_y, ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z;
+} values_ups;
+
+INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_ups *v)
+{
+    /* (ups-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    v->ups_q_x = R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] +
+        R_xx*m->ups_platform_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    v->ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yz*m->ups_platform_point_z[i] +
+        R_yy*m->ups_platform_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    v->ups_q_z = R_zx*m->ups_platform_point_x[i] + R_zy*m->ups_platform_point_y[i] +
+        R_zz*m->ups_platform_point_z[i];
+    const real t_x = X[0*w + j];
+    const real ups_S_x = t_x - m->ups_base_point_x[i] + v->ups_q_x;
+    const real t_y = X[1*w + j];
+    const real ups_S_y = t_y - m->ups_base_point_y[i] + v->ups_q_y;
+    const real t_z = X[2*w + j];
+    const real ups_S_z = t_z - m->ups_base_point_z[i] + v->ups_q_z;
+    const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
+        ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
+        ups_S_y*m->ups_base_frame_yy[i] + ups_S_z*m->ups_base_frame_zy[i];
+    const real ups_S_in_turn1_z = ups_S_x*m->ups_base_frame_xz[i] +
+        ups_S_y*m->ups_base_frame_yz[i] + ups_S_z*m->ups_base_frame_zz[i];
+    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    v->ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y;
+    v->ups_root_1 = m->ups_branch_1[i]*root(v->ups_root_1_t);
+    /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+    v->inv_ups_root_1 = 1/v->ups_root_1;
+    v->ups_c_1 = v->inv_ups_root_1*ups_S_in_turn1_x;
+    /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+    v->ups_s_1 = v->inv_ups_root_1*ups_S_in_turn1_y;
+    /* (ups-q_3) displacement of joint 3 */
+    v->ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + v->ups_root_1_t;
+    v->ups_q_3 = m->ups_branch_2[i]*root(v->ups_q_3_t);
+    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+    v->inv_ups_q_3 = 1/v->ups_q_3;
+    v->ups_c_2 = v->inv_ups_q_3*v->ups_root_1;
+    /* (ups-q_2) displacement of joint 2 */
+    v->ups_e_1_in_axes2_x = v->inv_ups_q_3*ups_S_in_turn1_z;
+    /* (ups-S_dot) velocity of the connection point */
+    v->axis_x_ups_axes2_x = v->inv_ups_q_3*ups_S_x;
+    v->axis_x_ups_axes2_y = v->inv_ups_q_3*ups_S_y;
+    v->axis_x_ups_axes2_z = v->inv_ups_q_3*ups_S_z;
+    /* (ups-qd_1) rate of joint 1 */
+    v->axis_z_ups_axes2_x = m->ups_base_frame_xy[i]*v->ups_c_1 -
+        m->ups_base_frame_xx[i]*v->ups_s_1;
+    v->axis_z_ups_axes2_y = m->ups_base_frame_yy[i]*v->ups_c_1 -
+        m->ups_base_frame_yx[i]*v->ups_s_1;
+    v->axis_z_ups_axes2_z = m->ups_base_frame_zy[i]*v->ups_c_1 -
+        m->ups_base_frame_zx[i]*v->ups_s_1;
+    /* (ups-qd_2) rate of joint 2 */
+    v->axis_y_ups_axes2_x = v->axis_x_ups_axes2_z*v->axis_z_ups_axes2_y -
+        v->axis_x_ups_axes2_y*v->axis_z_ups_axes2_z;
+    v->axis_y_ups_axes2_y = v->axis_x_ups_axes2_x*v->axis_z_ups_axes2_z -
+        v->axis_x_ups_axes2_z*v->axis_z_ups_axes2_x;
+    v->axis_y_ups_axes2_z = v->axis_x_ups_axes2_y*v->axis_z_ups_axes2_x -
+        v->axis_x_ups_axes2_x*v->axis_z_ups_axes2_y;
+    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real ups_acc_3_t_4 = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
+    v->ups_g_in_axes2_z = m->ups_acc_3_t_2[i]*v->ups_c_1 - m->ups_acc_3_t[i]*v->ups_s_1;
+    v->ups_g_in_axes2_x = m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x +
+        ups_acc_3_t_4*v->ups_c_2;
+    v->ups_g_in_axes2_y = ups_acc_3_t_4*v->ups_e_1_in_axes2_x -
+        m->ups_acc_3_t_3[i]*v->ups_c_2;
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    v->ups_mu_2_t_5 = v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_y[i] -
+        v->ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_z[i];
+    v->ups_mu_2_t_6 = v->ups_g_in_axes2_x*m->ups_h_group_2_in_axes2_z[i] -
+        v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_x[i];
+    v->ups_mu_2_t_7 = v->ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_x[i] -
+        v->ups_g_in_axes2_x*m->ups_h_group_2_in_axes2_y[i];
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    v->ups_H_a_3_x = v->axis_x_ups_axes2_z*v->ups_q_y - v->axis_x_ups_axes2_y*v->ups_q_z;
+    v->ups_H_a_3_y = v->axis_x_ups_axes2_x*v->ups_q_z - v->axis_x_ups_axes2_z*v->ups_q_x;
+    v->ups_H_a_3_z = v->axis_x_ups_axes2_y*v->ups_q_x - v->axis_x_ups_axes2_x*v->ups_q_y;
+}
+
+INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_ups *v)
+{
+    /* (ups-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    v->ups_S_dot_t = omega_y*v->ups_q_z - omega_z*v->ups_q_y;
+    const real omega_x = V[3*w + j];
+    v->ups_S_dot_t_2 = omega_z*v->ups_q_x - omega_x*v->ups_q_z;
+    v->ups_S_dot_t_3 = omega_x*v->ups_q_y - omega_y*v->ups_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real ups_S_dot_x = t_dot_x + v->ups_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real ups_S_dot_y = t_dot_y + v->ups_S_dot_t_2;
+    const real t_dot_z = V[2*w + j];
+    const real ups_S_dot_z = t_dot_z + v->ups_S_dot_t_3;
+    v->ups_S_dot_in_axes2_x = v->axis_x_ups_axes2_x*ups_S_dot_x +
+        v->axis_x_ups_axes2_y*ups_S_dot_y + v->axis_x_ups_axes2_z*ups_S_dot_z;
+    /* (ups-qd_1) rate of joint 1 */
+    v->ups_qd_1 = v->inv_ups_root_1*(v->axis_z_ups_axes2_x*ups_S_dot_x +
+        v->axis_z_ups_axes2_y*ups_S_dot_y + v->axis_z_ups_axes2_z*ups_S_dot_z);
+    /* (ups-qd_2) rate of joint 2 */
+    v->ups_qd_2 = v->inv_ups_q_3*(v->axis_y_ups_axes2_x*ups_S_dot_x +
+        v->axis_y_ups_axes2_y*ups_S_dot_y + v->axis_y_ups_axes2_z*ups_S_dot_z);
+    /* (ups-omega_1) angular velocity of link 1 */
+    const real ups_omega_1_in_axes2_x = v->ups_e_1_in_axes2_x*v->ups_qd_1;
+    const real ups_omega_1_in_axes2_y = -v->ups_c_2*v->ups_qd_1;
+    /* (ups-W_2) centripetal tensor of link 2 */
+    v->ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*v->ups_qd_2;
+    v->ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*v->ups_qd_2;
+    const real ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+    const real ups_W_2_t_2 = v->ups_qd_2*v->ups_qd_2;
+    v->ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2;
+    v->ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+    /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+    const real ups_bias_t = 2*v->ups_S_dot_in_axes2_x;
+    v->ups_bias_in_axes2_z = 2*v->ups_W_2_in_axes2_xz*v->ups_q_3 -
+        ups_bias_t*ups_omega_1_in_axes2_y;
+    /* (ups-qdd_2) acceleration of joint 2 */
+    v->ups_qdd_2_t = ups_bias_t*v->ups_qd_2;
+    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+    v->ups_phi_3_t = v->ups_W_2_in_axes2_xx*m->ups_h_3_in_spec2_x[i];
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+    v->ups_mu_2_t_2 = m->ups_J_group_2_in_axes2_yz[i]*(ups_W_2_t - ups_W_2_t_2);
+    v->ups_mu_2_t_3 = m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_t - ups_W_2_t_2);
+    v->ups_mu_2_t_4 = m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_t - ups_W_2_t);
+    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->ups_c_t = m->ups_h_3_in_spec2_z[i]*(ups_W_2_t_2 + ups_mu_2_t);
+    v->ups_c_t_2 = m->ups_h_3_in_spec2_y[i]*(ups_W_2_t + ups_mu_2_t);
+}
+
+INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *s, const real *A, values_ups *v)
+{
+    /* (ups-S_ddot) acceleration of the connection point */
+    const real B_p_xy = s[9*w + j];
+    const real B_p_xz = s[10*w + j];
+    const real W_p_t_4 = s[11*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real ups_S_ddot_x = t_ddot_x + B_p_xy*v->ups_q_y + B_p_xz*v->ups_q_z -
+        W_p_t_4*v->ups_q_x;
+    const real B_p_yx = s[12*w + j];
+    const real B_p_yz = s[13*w + j];
+    const real W_p_t_5 = s[14*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real ups_S_ddot_y = t_ddot_y + B_p_yx*v->ups_q_x + B_p_yz*v->ups_q_z -
+        W_p_t_5*v->ups_q_y;
+    const real B_p_zx = s[15*w + j];
+    const real B_p_zy = s[16*w + j];
+    const real W_p_t_6 = s[17*w + j];
+    const real t_ddot_z = A[2*w + j];
+    const real ups_S_ddot_z = t_ddot_z + B_p_zx*v->ups_q_x + B_p_zy*v->ups_q_y -
+        W_p_t_6*v->ups_q_z;
+    v->ups_S_ddot_in_axes2_x = v->axis_x_ups_axes2_x*ups_S_ddot_x +
+        v->axis_x_ups_axes2_y*ups_S_ddot_y + v->axis_x_ups_axes2_z*ups_S_ddot_z;
+    v->ups_S_ddot_t = v->axis_y_ups_axes2_x*ups_S_ddot_x;
+    v->ups_S_ddot_t_2 = v->axis_y_ups_axes2_y*ups_S_ddot_y;
+    v->ups_S_ddot_t_3 = v->axis_y_ups_axes2_z*ups_S_ddot_z;
+    v->ups_S_ddot_in_axes2_z = v->axis_z_ups_axes2_x*ups_S_ddot_x +
+        v->axis_z_ups_axes2_y*ups_S_ddot_y + v->axis_z_ups_axes2_z*ups_S_ddot_z;
+    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+    const real ups_rel_in_axes2_z = v->ups_S_ddot_in_axes2_z - v->ups_bias_in_axes2_z;
+    /* (ups-qdd_1) acceleration of joint 1 */
+    v->ups_qdd_1 = v->inv_ups_root_1*ups_rel_in_axes2_z;
+    /* (ups-qdd_2) acceleration of joint 2 */
+    v->ups_qdd_2_t_2 = v->inv_ups_q_3*(v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3
+        - v->ups_qdd_2_t);
+    v->ups_qdd_2 = v->ups_qdd_2_t_2 - v->ups_W_2_in_axes2_xy;
+}
+
+INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
+{
+    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real ups_d_alpha_1_in_axes2_xz = v->inv_ups_root_1*v->ups_e_1_in_axes2_x;
+    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+       about its reference point */
+    const real ups_d_phi_3_in_axes2_xy = v->inv_ups_q_3*m->ups_h_3_in_spec2_z[i];
+    const real ups_d_phi_3_in_axes2_yy = v->inv_ups_q_3*m->ups_h_3_in_spec2_x[i];
+    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real ups_d_c_in_axes2_xz = v->inv_ups_q_3*m->ups_h_3_in_spec2_y[i];
+    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+        v->inv_ups_q_3*(m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_q_3*m->ups_J_group_2_in_axes2_zz[i]);
+    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
+        v->inv_ups_q_3*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
+        v->inv_ups_q_3*m->ups_J_group_2_in_axes2_yz[i]);
+    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
+        ups_d_phi_3_in_axes2_yy -
+        v->inv_ups_root_1*(v->ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
+        - m->ups_h_3_in_spec2_z[i] - v->inv_ups_q_3*m->ups_J_group_2_in_axes2_xy[i]) -
+        v->ups_c_2*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz -
+        m->ups_h_3_in_spec2_x[i] - v->inv_ups_q_3*m->ups_J_group_2_in_axes2_yy[i]));
+    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+    const real ups_Q_t_3 = v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_x*ups_Q_t - v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_4 = v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_y*ups_Q_t - v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_5 = v->axis_y_ups_axes2_z*ups_Q_t -
+        v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
+        v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_6 = v->axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
+        v->axis_z_ups_axes2_x*ups_Q_t_2;
+    const real ups_Q_t_7 = v->axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
+        v->axis_z_ups_axes2_y*ups_Q_t_2;
+    const real ups_Q_t_8 = v->axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
+        v->axis_z_ups_axes2_z*ups_Q_t_2;
+    const real ups_Q_t_9 = v->axis_z_ups_axes2_x*ups_Q_t_6 - v->axis_y_ups_axes2_x*ups_Q_t_3;
+    v->ups_Q_xx = -2*ups_Q_t_9;
+    v->ups_Q_xy = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 -
+        v->axis_z_ups_axes2_x*ups_Q_t_7 - v->axis_z_ups_axes2_y*ups_Q_t_6;
+    v->ups_Q_xz = v->axis_y_ups_axes2_z*ups_Q_t_3 - v->axis_y_ups_axes2_x*ups_Q_t_5 -
+        v->axis_z_ups_axes2_x*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_6;
+    const real ups_Q_t_10 = v->axis_z_ups_axes2_y*ups_Q_t_7 - v->axis_y_ups_axes2_y*ups_Q_t_4;
+    v->ups_Q_yy = -2*ups_Q_t_10;
+    v->ups_Q_yz = v->axis_y_ups_axes2_z*ups_Q_t_4 - v->axis_y_ups_axes2_y*ups_Q_t_5 -
+        v->axis_z_ups_axes2_y*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_7;
+    const real ups_Q_t_11 = v->axis_y_ups_axes2_z*ups_Q_t_5 + v->axis_z_ups_axes2_z*ups_Q_t_8;
+    v->ups_Q_zz = -2*ups_Q_t_11;
+    /* (M_ta) coupling block of M */
+    const real ups_M_ta_t = v->ups_Q_xy*v->ups_q_z;
+    const real ups_M_ta_t_2 = v->ups_Q_xz*v->ups_q_y;
+    v->ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
+    v->ups_M_ta_t_4 = v->ups_Q_xx*v->ups_q_z - v->ups_Q_xz*v->ups_q_x;
+    v->ups_M_ta_t_5 = v->ups_Q_xy*v->ups_q_x - v->ups_Q_xx*v->ups_q_y;
+    v->ups_M_ta_t_6 = v->ups_Q_yz*v->ups_q_y - v->ups_Q_yy*v->ups_q_z;
+    const real ups_M_ta_t_7 = v->ups_Q_yz*v->ups_q_x;
+    v->ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
+    v->ups_M_ta_t_9 = v->ups_Q_yy*v->ups_q_x - v->ups_Q_xy*v->ups_q_y;
+    v->ups_M_ta_t_10 = v->ups_Q_zz*v->ups_q_y - v->ups_Q_yz*v->ups_q_z;
+    v->ups_M_ta_t_11 = v->ups_Q_xz*v->ups_q_z - v->ups_Q_zz*v->ups_q_x;
+    v->ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
+    /* (M_aa) rotational block of M */
+    v->ups_M_aa_t = v->ups_M_ta_t_10*v->ups_q_y - v->ups_M_ta_t_6*v->ups_q_z;
+    v->ups_M_aa_t_2 = v->ups_M_ta_t_11*v->ups_q_y - v->ups_M_ta_t_8*v->ups_q_z;
+    v->ups_M_aa_t_3 = v->ups_M_ta_t_12*v->ups_q_y - v->ups_M_ta_t_9*v->ups_q_z;
+    v->ups_M_aa_t_4 = v->ups_M_ta_t_4*v->ups_q_z - v->ups_M_ta_t_11*v->ups_q_x;
+    v->ups_M_aa_t_5 = v->ups_M_ta_t_5*v->ups_q_z - v->ups_M_ta_t_12*v->ups_q_x;
+    v->ups_M_aa_t_6 = v->ups_M_ta_t_9*v->ups_q_x - v->ups_M_ta_t_5*v->ups_q_y;
+}
+
+INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_ups *v)
+{
+    /* (ups-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real ups_u_1_x = omega_y*v->ups_S_dot_t_3 - omega_z*v->ups_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real ups_u_1_y = omega_z*v->ups_S_dot_t - omega_x*v->ups_S_dot_t_3;
+    const real ups_u_1_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t;
+    const real ups_u_1_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
+        v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z;
+    const real ups_u_1_t = v->axis_y_ups_axes2_x*ups_u_1_x;
+    const real ups_u_1_t_2 = v->axis_y_ups_axes2_y*ups_u_1_y;
+    const real ups_u_1_t_3 = v->axis_y_ups_axes2_z*ups_u_1_z;
+    const real ups_u_1_in_axes2_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3;
+    const real ups_u_1_in_axes2_z = v->axis_z_ups_axes2_x*ups_u_1_x +
+        v->axis_z_ups_axes2_y*ups_u_1_y + v->axis_z_ups_axes2_z*ups_u_1_z;
+    /* (ups-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_bias_in_axes2_z;
+    /* (ups-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real ups_qdd_1_o = v->inv_ups_root_1*ups_rel_o_in_axes2_z;
+    /* (ups-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real ups_alpha_1_o_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1_o;
+    const real ups_alpha_1_o_in_axes2_y = -v->ups_c_2*ups_qdd_1_o;
+    /* (ups-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real ups_alpha_2_o_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
+    const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
+    /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real ups_B_2_o_in_axes2_yx = v->inv_ups_q_3*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 -
+        v->ups_qdd_2_t);
+    const real ups_B_2_o_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
+    const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
+    const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
+    /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
+       */
+    const real ups_phi_3_o_in_axes2_x = v->ups_phi_3_t -
+        ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+        ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i];
+    /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real ups_mu_2_o_in_axes2_x = v->ups_mu_2_t_2 - v->ups_mu_2_t_5 -
+        m->ups_h_3_in_spec2_z[i]*ups_u_1_in_axes2_z -
+        m->ups_h_3_in_spec2_y[i]*ups_u_1_in_axes2_y +
+        ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_x +
+        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_o_in_axes2_y = m->ups_h_3_in_spec2_y[i]*ups_u_1_in_axes2_x -
+        v->ups_mu_2_t_6 - m->ups_h_3_in_spec2_x[i]*ups_u_1_in_axes2_z - v->ups_mu_2_t_3 -
+        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
+        ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_o_in_axes2_z = m->ups_h_3_in_spec2_z[i]*ups_u_1_in_axes2_x -
+        v->ups_mu_2_t_7 + m->ups_h_3_in_spec2_x[i]*ups_u_1_in_axes2_y + v->ups_mu_2_t_4 +
+        ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] -
+        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y;
+    /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
+        v->ups_c_t - ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z;
+    const real ups_c_o_in_axes2_z = v->ups_c_t_2 +
+        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
+        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x);
+    /* (ups-U) velocity and gravity terms of the leg force */
+    v->ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
+    v->ups_U_y = v->axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_y*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
+    v->ups_U_z = v->axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_z*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
+    /* (Z_a) rotational part of Z */
+    v->ups_Z_a_t = v->ups_U_z*v->ups_q_y - v->ups_U_y*v->ups_q_z;
+    v->ups_Z_a_t_2 = v->ups_U_x*v->ups_q_z - v->ups_U_z*v->ups_q_x;
+    v->ups_Z_a_t_3 = v->ups_U_y*v->ups_q_x - v->ups_U_x*v->ups_q_y;
+}
+
+INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
+{
+    /* (ups-S_ddot) acceleration of the connection point */
+    v->ups_S_ddot_in_axes2_y = v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3;
+    /* (ups-alpha_1) angular acceleration of link 1 */
+    const real ups_alpha_1_in_axes2_x = v->ups_e_1_in_axes2_x*v->ups_qdd_1;
+    const real ups_alpha_1_in_axes2_y = -v->ups_c_2*v->ups_qdd_1;
+    /* (ups-alpha_2) angular acceleration of link 2 */
+    const real ups_alpha_2_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
+    const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - v->ups_W_2_in_axes2_xz;
+    /* (ups-B_2) acceleration tensor of link 2 */
+    const real ups_B_2_in_axes2_xy = v->ups_W_2_in_axes2_xy - v->ups_qdd_2;
+    const real ups_B_2_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
+    const real ups_B_2_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
+    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+    v->ups_phi_3_in_axes2_x = v->ups_phi_3_t + ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i]
+        - ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ups_mu_2_in_axes2_x = v->ups_mu_2_t_2 - v->ups_mu_2_t_5 -
+        v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*v->ups_qdd_2_t_2 +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_in_axes2_x +
+        ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_in_axes2_y = v->ups_S_ddot_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
+        v->ups_mu_2_t_6 - v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_x[i] - v->ups_mu_2_t_3
+        + m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_in_axes2_y -
+        ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_in_axes2_z = v->ups_S_ddot_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
+        v->ups_mu_2_t_7 + v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_x[i] + v->ups_mu_2_t_4
+        + m->ups_Sigma_2_in_axes2_xx[i]*v->ups_qdd_2_t_2 +
+        m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_in_axes2_y -
+        ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i];
+    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] - v->ups_c_t -
+        m->ups_h_3_in_spec2_x[i]*v->ups_qdd_2_t_2 - v->inv_ups_q_3*ups_mu_2_in_axes2_z;
+    v->ups_c_in_axes2_z = v->ups_c_t_2 + ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_in_axes2_y -
+        v->ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_Z_dynamics(m, w, k, V, v);
+    s[27*w + k] = v->Z_p_x;
+    s[28*w + k] = v->Z_p_y;
+    s[29*w + k] = v->Z_p_z;
+    s[30*w + k] = v->Z_q_x;
+    s[31*w + k] = v->Z_q_y;
+    s[32*w + k] = v->Z_q_z;
+}
+
+INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
+{
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    stage_ups_V_X(m, w, i, j, V, &v);
+    stage_ups_M_dynamics(m, i, &v);
+    stage_ups_Z_dynamics(m, w, i, j, V, &v);
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v.ups_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.ups_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.ups_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.ups_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.ups_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v.ups_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.ups_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.ups_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.ups_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.ups_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[21*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[24*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (ups-w_3) reciprocal vector 3 */
+    o[0*count + k] = v.axis_x_ups_axes2_x;
+    o[1*count + k] = v.axis_x_ups_axes2_y;
+    o[2*count + k] = v.axis_x_ups_axes2_z;
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.ups_H_a_3_x;
+    o[4*count + k] = v.ups_H_a_3_y;
+    o[5*count + k] = v.ups_H_a_3_z;
+    o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
+        (v.ups_H_a_3_x + (v.ups_H_a_3_y + v.ups_H_a_3_z));
+    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
+}
+
+INLINE void dynamics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
+}
+
+INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
+{
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
+    stage_tube_V_X(m, w, i, j, V, &v);
+    stage_tube_M_dynamics(m, i, &v);
+    stage_tube_Z_dynamics(m, i, &v);
     /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real tube_gamma_c1 = tube_rel_o_in_axes2_y - v.tube_m1_c1_t*tube_nu_1 -
-        v.tube_m3_c1_t*tube_nu_3;
+    const real tube_gamma_c1 = v.tube_rel_o_in_axes2_y - v.tube_m1_c1_t*v.tube_nu_1 -
+        v.tube_m3_c1_t*v.tube_nu_3;
     /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real tube_gamma_c2 = tube_rel_o_in_axes2_z + v.tube_m3_c2*tube_nu_3 -
-        v.tube_m1_c2_t*tube_nu_1;
+    const real tube_gamma_c2 = v.tube_rel_o_in_axes2_z + v.tube_m3_c2*v.tube_nu_3 -
+        v.tube_m1_c2_t*v.tube_nu_1;
     /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real tube_gamma_c3 = v.inv_tube_size_c3*tube_nu_2 + v.tube_mu1_c3*tube_nu_1 -
-        v.tube_mu3_c3_t*tube_nu_3;
+    const real tube_gamma_c3 = v.inv_tube_size_c3*v.tube_nu_2 + v.tube_mu1_c3*v.tube_nu_1 -
+        v.tube_mu3_c3_t*v.tube_nu_3;
     /* (M_tt) */
-    gather(&terms[0*count + k], add, tube_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, tube_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, tube_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, tube_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, tube_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, tube_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[0*count + k], add, v.tube_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.tube_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.tube_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.tube_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.tube_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.tube_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) */
-    gather(&terms[6*count + k], add, tube_M_ta_t_13);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, tube_M_ta_t_14);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, tube_M_ta_t_15);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, tube_M_ta_t_16);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, tube_M_ta_t_17);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, tube_M_ta_t_18);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, tube_M_ta_t_19);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, tube_M_ta_t_20);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, tube_M_ta_t_21);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.tube_M_ta_t_13);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.tube_M_ta_t_14);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.tube_M_ta_t_15);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.tube_M_ta_t_16);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.tube_M_ta_t_17);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v.tube_M_ta_t_18);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.tube_M_ta_t_19);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.tube_M_ta_t_20);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.tube_M_ta_t_21);  /* M_ta_zz */
     /* (M_aa) */
-    gather(&terms[15*count + k], add, tube_M_aa_t_10);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, tube_M_aa_t_11);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, tube_M_aa_t_12);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, tube_M_aa_t_13);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, tube_M_aa_t_14);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, tube_M_aa_t_15);  /* M_aa_zz_of_legs */
+    gather(&terms[15*count + k], add, v.tube_M_aa_t_10);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.tube_M_aa_t_11);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.tube_M_aa_t_12);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.tube_M_aa_t_13);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.tube_M_aa_t_14);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.tube_M_aa_t_15);  /* M_aa_zz_of_legs */
     /* (Z_t) */
-    gather(&terms[21*count + k], add, tube_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, tube_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, tube_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[21*count + k], add, v.tube_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, v.tube_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, v.tube_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) */
-    gather(&terms[24*count + k], add, tube_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, tube_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, tube_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[24*count + k], add, v.tube_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, v.tube_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, v.tube_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (tube-n_c1) unit force of the constraint wrench */
     o[0*count + k] = v.axis_y_tube_axes2_x;
     o[1*count + k] = v.axis_y_tube_axes2_y;
@@ -4613,7 +4078,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void dynamics_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *Hk, real *constraint_bias, verdict *t)
+    *Hk, real *constraint_bias, status_flags *t)
 {
     Hk[0*w + k] = o[0*count + at];
     Hk[NC*w + k] = o[1*count + at];
@@ -4638,7 +4103,7 @@ INLINE void dynamics_place_tube(size_t w, size_t k, size_t at, size_t count, con
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -4649,58 +4114,58 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
-    const real Z_p_x = s[18*w + k];
+    const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[21*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
+    const real Z_p_y = s[28*w + k];
     const real Z_t_y_of_legs = sums[22*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
+    const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[23*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
-    const real Z_q_x = s[21*w + k];
+    const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
-    const real Z_q_y = s[22*w + k];
+    const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
-    const real Z_q_z = s[23*w + k];
+    const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -4762,9 +4227,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, real *Hk, real *constraint_bias, verdict *t)
+    *H, real *Hk, real *constraint_bias, status_flags *t)
 {
-    real s[24] = {0}, sums[27] = {0};
+    real s[33] = {0}, sums[27] = {0};
     real terms_ups[27*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[27*LEGS(LEGS_OF_tube)] = {0}, o_tube[20*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
@@ -4795,10 +4260,10 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias, verdict
-    *restrict t)
+    real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
+    status_flags *restrict t)
 {
-    real s[24*LANES], sums[27*LANES];
+    real s[33*LANES], sums[27*LANES];
     real o_ups[8*LANES];
     real o_tube[20*LANES];
     clear(Hk, NV*NC*LANES);
@@ -4831,7 +4296,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 
 /* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4843,21 +4308,16 @@ INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, value
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
-{
-    stage_M_dynamics(m, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -4865,108 +4325,37 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real ups_e_1_in_axes2_x = v.ups_S_in_turn1_z*v.ups_w_2_in_axes2_y;
-    const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*ups_e_1_in_axes2_x;
-    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
-    const real ups_d_phi_3_in_axes2_xy = m->ups_h_3_in_spec2_z[i]*v.ups_w_2_in_axes2_y;
-    const real ups_d_phi_3_in_axes2_yy = m->ups_h_3_in_spec2_x[i]*v.ups_w_2_in_axes2_y;
-    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real ups_d_c_in_axes2_xz = m->ups_h_3_in_spec2_y[i]*v.ups_w_2_in_axes2_y;
-    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-        v.ups_w_2_in_axes2_y*(m->ups_h_3_in_spec2_x[i] +
-        m->ups_J_group_2_in_axes2_zz[i]*v.ups_w_2_in_axes2_y);
-    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
-        v.ups_w_2_in_axes2_y*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_w_2_in_axes2_y);
-    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
-        ups_d_phi_3_in_axes2_yy -
-        v.inv_ups_root_1*(ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
-        - m->ups_h_3_in_spec2_z[i] - m->ups_J_group_2_in_axes2_xy[i]*v.ups_w_2_in_axes2_y) -
-        v.ups_root_1*v.ups_w_2_in_axes2_y*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz
-        - m->ups_h_3_in_spec2_x[i] - m->ups_J_group_2_in_axes2_yy[i]*v.ups_w_2_in_axes2_y));
-    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real axis_y_ups_axes2_x = v.axis_z_ups_axes2_y*v.ups_w_3_z -
-        v.axis_z_ups_axes2_z*v.ups_w_3_y;
-    const real axis_y_ups_axes2_y = v.axis_z_ups_axes2_z*v.ups_w_3_x -
-        v.axis_z_ups_axes2_x*v.ups_w_3_z;
-    const real axis_y_ups_axes2_z = v.axis_z_ups_axes2_x*v.ups_w_3_y -
-        v.axis_z_ups_axes2_y*v.ups_w_3_x;
-    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
-    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-    const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
-        v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
-        v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_6 = ups_d_c_in_axes2_xz*v.ups_w_3_x + v.axis_z_ups_axes2_x*ups_Q_t_2;
-    const real ups_Q_t_7 = ups_d_c_in_axes2_xz*v.ups_w_3_y + v.axis_z_ups_axes2_y*ups_Q_t_2;
-    const real ups_Q_t_8 = ups_d_c_in_axes2_xz*v.ups_w_3_z + v.axis_z_ups_axes2_z*ups_Q_t_2;
-    const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
-    const real ups_Q_xx = -2*ups_Q_t_9;
-    const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
-        v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
-    const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
-        v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
-    const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
-    const real ups_Q_yy = -2*ups_Q_t_10;
-    const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
-        v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
-    const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
-    const real ups_Q_zz = -2*ups_Q_t_11;
-    /* (M_ta) coupling block of M */
-    const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
-    const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
-    const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
-    const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
-    const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
-    const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
-    const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
-    const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
-    const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
-    const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
-    const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
-    const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
-    /* (M_aa) rotational block of M */
-    const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
-    const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y - ups_M_ta_t_8*v.ups_q_z;
-    const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
-    const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
-    const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
-    const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
+    stage_ups_M_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.ups_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.ups_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.ups_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.ups_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.ups_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v.ups_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.ups_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.ups_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.ups_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.ups_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void M_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -4976,649 +4365,46 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
 {
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
-    /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
-        v.tube_n_m1_t_11*v.tube_s_1) -
-        v.tube_c_2*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_yx[i] +
-        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_yy[i] +
-        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_yz[i]);
-    /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-    const real tube_n_m2_t = v.tube_n_m1_t_7*m->tube_platform_joint_rotation_zx[i] +
-        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_zy[i] +
-        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_zz[i];
-    const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*m->tube_platform_joint_rotation_zx[i]
-        + v.tube_n_m1_t_2*m->tube_platform_joint_rotation_zy[i] +
-        v.tube_n_m1_t_3*m->tube_platform_joint_rotation_zz[i]) +
-        v.tube_s_1*(v.tube_n_m1_t_4*m->tube_platform_joint_rotation_zx[i] +
-        v.tube_n_m1_t_5*m->tube_platform_joint_rotation_zy[i] +
-        v.tube_n_m1_t_6*m->tube_platform_joint_rotation_zz[i]);
-    const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
-        v.tube_e_1_in_axes2_x*tube_n_m2_t;
-    const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
-        v.tube_c_2*tube_n_m2_t;
-    const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
-        v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
-    /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-    const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
-        v.tube_n_m3_t_2*v.tube_s_1) +
-        v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_xx[i] +
-        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_xy[i] +
-        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_xz[i]);
-    const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
-    /* (tube-f_c1) force part of constraint wrench 1 */
-    const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-        tube_n_m1_in_axes2_z*tube_n_m3_t_3;
-    /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-    const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-    const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
-    /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-    const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
-    /* (tube-size_c3) size of the moment */
-    const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
-    /* (tube-mu2_c3) moment along direction 2 that goes with it */
-    const real tube_mu2_c3 = 1/tube_size_c3;
-    /* (tube-w_1) force part of reciprocal wrench 1 */
-    const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_3;
-    const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
-    const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
-    const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-    const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
-    const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
-    const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
-    const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
-    const real tube_w_1_t_10 = R(1.35)*tube_m1_c3*tube_mu2_c3;
-    const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
-    const real tube_w_1_t_12 = R(1.35)*tube_m3_c3_t*tube_mu2_c3;
-    const real tube_w_1_t_13 = root(v.tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
-        tube_w_1_t_5*tube_w_1_t_5);
-    const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-    const real tube_w_1_t_14 = inv_tube_w_1_t_13*v.tube_q_3;
-    const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
-    const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
-    const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
-        tube_w_1_t_14;
-    const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
-    const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-    const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-    const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
-    const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
-    const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-    const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
-    const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
-    const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
-    const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
-    const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-    const real tube_w_1_t_29 = v.tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
-    const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-    const real tube_w_1_t_31 = v.tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
-    const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
-    const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-        + tube_w_1_t_20*tube_w_1_t_20);
-    const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-    const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-    const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-    const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-    const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-        tube_w_1_t_24*tube_w_1_t_36;
-    const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-    const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-    const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-    const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-        tube_w_1_t_27*tube_w_1_t_35;
-    const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-    const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-    const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-    const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
-        tube_w_1_t_31*tube_w_1_t_35;
-    const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-    const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-    const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-    const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-        tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-    const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-    const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-    const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-    const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-    const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-        tube_w_1_t_43*tube_w_1_t_51;
-    const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-    const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-    const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-    const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 - inv_tube_w_1_t_49*v.tube_root_1 +
-        tube_w_1_t_48*tube_w_1_t_52 - tube_w_1_t_47*tube_w_1_t_51;
-    const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-    const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-    const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-    const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-    const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-        + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-        tube_w_1_t_57*tube_w_1_t_57);
-    const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-    const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-    const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-    const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-    const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-    const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-    const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-        tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-        tube_w_1_t_2*tube_w_1_t_67;
-    const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-    const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-    const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-    const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-    const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-    const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-        + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-        tube_w_1_t_74*tube_w_1_t_74);
-    const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
-    const real tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70;
-    const real tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71;
-    const real tube_w_1_in_axes2_y = inv_tube_w_1_t_75*tube_w_1_t_76;
-    const real tube_w_1_in_axes2_z = inv_tube_w_1_t_75*tube_w_1_t_77;
-    const real tube_w_1_in_axes1_x = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_y;
-    const real tube_w_1_t_78 = v.tube_c_2*tube_w_1_in_axes2_y;
-    /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
-    const real tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72;
-    const real tube_m1_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m1_w_1_t;
-    /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
-    const real tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73;
-    const real tube_m2_w_1 = -R(1.35)*inv_tube_w_1_t_75*tube_m2_w_1_t;
-    /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
-    const real tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74;
-    const real tube_m3_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m3_w_1_t;
-    /* (tube-w_2) force part of reciprocal wrench 2 */
-    const real tube_w_2_t = inv_tube_w_1_t_13*inv_tube_w_1_t_33*tube_w_1_t_17;
-    const real tube_w_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_13*tube_w_1_t_21 -
-        tube_w_1_t_37*tube_w_2_t);
-    const real tube_w_2_t_3 = inv_tube_w_1_t_63*(tube_w_1_t_41*tube_w_2_t -
-        inv_tube_w_1_t_13*tube_w_1_t_25 + tube_w_1_t_53*tube_w_2_t_2);
-    const real tube_w_2_t_4 = inv_tube_w_1_t_75*(inv_tube_w_1_t_13*tube_w_1_t_29 -
-        tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2 + tube_w_1_t_69*tube_w_2_t_3);
-    const real tube_w_2_in_axes2_y = inv_tube_w_1_t_13*tube_w_1_t_14 +
-        tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 + tube_w_1_t_64*tube_w_2_t_3 -
-        tube_w_1_t_76*tube_w_2_t_4;
-    const real tube_w_2_in_axes2_z = inv_tube_w_1_t_49*tube_w_2_t_2 +
-        tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4;
-    /* (tube-m1_w_2) moment part 1 of reciprocal wrench 2 */
-    const real tube_m1_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t +
-        tube_w_1_t_51*tube_w_2_t_2 + tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4;
-    const real tube_m1_w_2 = R(1.35)*tube_m1_w_2_t;
-    /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
-    const real tube_m2_w_2_t = tube_w_1_t_67*tube_w_2_t_3 + tube_m2_w_1_t*tube_w_2_t_4;
-    const real tube_m2_w_2 = R(1.35)*tube_m2_w_2_t;
-    /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
-    const real tube_m3_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t +
-        tube_w_1_t_52*tube_w_2_t_2 + tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4;
-    const real tube_m3_w_2 = R(1.35)*tube_m3_w_2_t;
-    /* (tube-o_1) moment part of reciprocal wrench 1 */
-    const real tube_o_1_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_1 -
-        v.tube_end_p3_in_axes2_z*tube_m3_w_1;
-    const real tube_o_1_in_axes2_y = tube_m2_w_1*tube_n_m2_in_axes2_y -
-        v.tube_end_p1_in_axes2_z*tube_m1_w_1;
-    const real tube_o_1_in_axes2_z = tube_m1_w_1*tube_n_m1_in_axes2_z +
-        tube_m3_w_1*tube_n_m3_in_axes2_z;
-    /* (tube-o_2) moment part of reciprocal wrench 2 */
-    const real tube_o_2_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_2 -
-        v.tube_end_p3_in_axes2_z*tube_m3_w_2;
-    const real tube_o_2_in_axes2_y = tube_m2_w_2*tube_n_m2_in_axes2_y -
-        v.tube_end_p1_in_axes2_z*tube_m1_w_2;
-    const real tube_o_2_in_axes2_z = tube_m1_w_2*tube_n_m1_in_axes2_z +
-        tube_m3_w_2*tube_n_m3_in_axes2_z;
-    /* (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real tube_dalpha_alpha_1_t = v.tube_c_2*tube_o_1_in_axes2_x;
-    const real tube_dalpha_alpha_1_in_axes2_xy = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_y;
-    const real tube_dalpha_alpha_1_t_2 = v.tube_c_2*tube_o_1_in_axes2_y;
-    const real tube_dalpha_alpha_1_in_axes2_xx = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_x;
-    const real tube_dalpha_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_z;
-    const real tube_dalpha_alpha_1_t_3 = v.tube_c_2*tube_o_1_in_axes2_z;
-    /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real tube_d_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_z;
-    const real tube_d_alpha_1_t = v.tube_c_2*tube_w_1_in_axes2_z;
-    /* (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
-    const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*v.tube_q_3;
-    const real tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*v.tube_q_3;
-    const real tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*v.tube_q_3;
-    const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*v.tube_q_3;
-    const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*v.tube_q_3;
-    const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*v.tube_q_3;
-    /* (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
-       3, less gravity */
-    const real tube_d_acc_3_in_axes2_yy = v.tube_q_3*tube_w_2_in_axes2_y;
-    const real tube_d_acc_3_in_axes2_yz = v.tube_q_3*tube_w_2_in_axes2_z;
-    const real tube_d_acc_3_in_axes2_zy = v.tube_q_3*tube_w_1_t_78;
-    const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*v.tube_q_3;
-    /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
-       outwards, the force at the connection point left out */
-    const real tube_dalpha_N_2_in_axes2_zx =
-        m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_x +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xx +
-        tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_x[i] -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t +
-        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_x +
-        tube_dalpha_acc_3_in_axes2_yx*m->tube_link3_mass[i] -
-        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_y[i]);
-    const real tube_dalpha_N_2_in_axes2_zy =
-        m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_y +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xy +
-        tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_2 +
-        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_y +
-        tube_dalpha_acc_3_in_axes2_yy*m->tube_link3_mass[i] -
-        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_y[i]);
-    const real tube_dalpha_N_2_in_axes2_zz =
-        m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_z +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xz +
-        tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_3 +
-        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_z +
-        tube_dalpha_acc_3_in_axes2_yz*m->tube_link3_mass[i] -
-        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]);
-    /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
-       outwards, the force at the connection point left out */
-    const real tube_d_N_2_in_axes2_zy = m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_y +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_w_1_in_axes1_x +
-        tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_w_1_t_78 +
-        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_y +
-        tube_d_acc_3_in_axes2_yy*m->tube_link3_mass[i] -
-        m->tube_h_3_in_spec2_y[i]*tube_w_1_in_axes1_x);
-    const real tube_d_N_2_in_axes2_zz = m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_z +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_d_alpha_1_in_axes2_xz +
-        tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_d_alpha_1_t +
-        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_z +
-        tube_d_acc_3_in_axes2_yz*m->tube_link3_mass[i] -
-        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]);
-    /* (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-       links' inertia and weight */
-    const real tube_dalpha_Gamma_1_t =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_x +
-        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xx -
-        m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t -
-        tube_dalpha_acc_3_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
-        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_z[i] +
-        tube_dalpha_acc_3_in_axes2_zx*m->tube_link3_mass[i]));
-    const real tube_dalpha_Gamma_1_in_axes2_x =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_x +
-        m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xx -
-        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t -
-        tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_y[i] -
-        tube_dalpha_acc_3_in_axes2_zx*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t;
-    const real tube_dalpha_Gamma_1_t_2 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_y +
-        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xy -
-        m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t_2 -
-        tube_dalpha_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_x[i] -
-        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_z[i] +
-        tube_dalpha_acc_3_in_axes2_zy*m->tube_link3_mass[i]));
-    const real tube_dalpha_Gamma_1_in_axes2_y =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_y +
-        m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xy -
-        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t_2 -
-        tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_y[i] -
-        tube_dalpha_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t_2;
-    const real tube_dalpha_Gamma_1_t_3 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_z +
-        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xz -
-        m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t_3 -
-        tube_dalpha_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_x[i] -
-        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i] +
-        tube_dalpha_acc_3_in_axes2_zz*m->tube_link3_mass[i]));
-    const real tube_dalpha_Gamma_1_in_axes2_z =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_z +
-        m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xz -
-        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t_3 -
-        tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_y[i] -
-        tube_dalpha_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t_3;
-    /* (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
-    const real tube_d_Gamma_1_t = v.tube_c_2*m->tube_h_3_in_spec2_y[i];
-    const real tube_d_Gamma_1_t_2 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_y +
-        m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_in_axes1_x -
-        m->tube_J_group_2_in_axes2_yy[i]*tube_w_1_t_78 -
-        tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_1_t_78 -
-        m->tube_h_3_in_spec2_z[i]*tube_w_1_in_axes1_x +
-        tube_d_acc_3_in_axes2_zy*m->tube_link3_mass[i]));
-    const real tube_d_Gamma_1_in_axes2_y =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_y +
-        m->tube_J_group_2_in_axes2_xx[i]*tube_w_1_in_axes1_x -
-        m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_t_78 -
-        tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_y[i] -
-        tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_z[i]) - tube_d_Gamma_1_t_2;
-    const real tube_d_Gamma_1_t_3 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_z +
-        m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_in_axes2_xz -
-        m->tube_J_group_2_in_axes2_yy[i]*tube_d_alpha_1_t -
-        tube_d_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_d_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
-        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i] +
-        tube_d_acc_3_in_axes2_zz*m->tube_link3_mass[i]));
-    const real tube_d_Gamma_1_in_axes2_z =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_z +
-        m->tube_J_group_2_in_axes2_xx[i]*tube_d_alpha_1_in_axes2_xz -
-        m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_t -
-        tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_y[i] -
-        tube_d_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_z[i]) - tube_d_Gamma_1_t_3;
-    /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_in_axes2_yx = tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y +
-        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y;
-    const real tube_dalpha_G_in_axes2_yy = tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y +
-        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y;
-    const real tube_dalpha_G_in_axes2_yz = tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y +
-        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y;
-    const real tube_dalpha_G_in_axes2_zx = tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z +
-        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z;
-    const real tube_dalpha_G_in_axes2_zy = tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z +
-        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z;
-    const real tube_dalpha_G_in_axes2_zz = tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z +
-        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z;
-    /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
-       leg's inertia and weight along all degrees of freedom */
-    const real tube_d_G_in_axes2_yz = tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y +
-        tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y;
-    /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2 +
-        tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1;
-    const real tube_dalpha_G_m1_in_axes2_y = tube_dalpha_N_2_in_axes2_zy*tube_m1_w_2 +
-        tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1;
-    const real tube_dalpha_G_m1_in_axes2_z = tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2 +
-        tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1;
-    /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real tube_d_G_m1_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m1_w_2 -
-        tube_d_Gamma_1_t*tube_m1_w_1;
-    const real tube_d_G_m1_in_axes2_y = tube_d_N_2_in_axes2_zy*tube_m1_w_2 +
-        tube_d_Gamma_1_in_axes2_y*tube_m1_w_1;
-    const real tube_d_G_m1_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m1_w_2 +
-        tube_d_Gamma_1_in_axes2_z*tube_m1_w_1;
-    /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2 +
-        tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1;
-    const real tube_dalpha_G_m2_in_axes2_y = tube_dalpha_N_2_in_axes2_zy*tube_m2_w_2 +
-        tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1;
-    const real tube_dalpha_G_m2_in_axes2_z = tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2 +
-        tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1;
-    /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real tube_d_G_m2_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m2_w_2 -
-        tube_d_Gamma_1_t*tube_m2_w_1;
-    const real tube_d_G_m2_in_axes2_y = tube_d_N_2_in_axes2_zy*tube_m2_w_2 +
-        tube_d_Gamma_1_in_axes2_y*tube_m2_w_1;
-    const real tube_d_G_m2_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m2_w_2 +
-        tube_d_Gamma_1_in_axes2_z*tube_m2_w_1;
-    /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2 +
-        tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1;
-    const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2 +
-        tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1;
-    const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2 +
-        tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1;
-    /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real tube_d_G_m3_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m3_w_2 -
-        tube_d_Gamma_1_t*tube_m3_w_1;
-    const real tube_d_G_m3_in_axes2_y = tube_d_N_2_in_axes2_zy*tube_m3_w_2 +
-        tube_d_Gamma_1_in_axes2_y*tube_m3_w_1;
-    const real tube_d_G_m3_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m3_w_2 +
-        tube_d_Gamma_1_in_axes2_z*tube_m3_w_1;
-    /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_m_in_axes2_xx =
-        -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
-        tube_dalpha_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
-    const real tube_dalpha_G_m_in_axes2_xy =
-        -tube_dalpha_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
-        tube_dalpha_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
-    const real tube_dalpha_G_m_in_axes2_xz =
-        -tube_dalpha_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
-        tube_dalpha_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
-    const real tube_dalpha_G_m_in_axes2_yx = tube_dalpha_G_m2_in_axes2_x*tube_n_m2_in_axes2_y
-        - tube_dalpha_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
-    const real tube_dalpha_G_m_in_axes2_yy = tube_dalpha_G_m2_in_axes2_y*tube_n_m2_in_axes2_y
-        - tube_dalpha_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
-    const real tube_dalpha_G_m_in_axes2_yz = tube_dalpha_G_m2_in_axes2_z*tube_n_m2_in_axes2_y
-        - tube_dalpha_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
-    const real tube_dalpha_G_m_in_axes2_zx = tube_dalpha_G_m1_in_axes2_x*tube_n_m1_in_axes2_z
-        + tube_dalpha_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
-    const real tube_dalpha_G_m_in_axes2_zy = tube_dalpha_G_m1_in_axes2_y*tube_n_m1_in_axes2_z
-        + tube_dalpha_G_m3_in_axes2_y*tube_n_m3_in_axes2_z;
-    const real tube_dalpha_G_m_in_axes2_zz = tube_dalpha_G_m1_in_axes2_z*tube_n_m1_in_axes2_z
-        + tube_dalpha_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
-    /* (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
-        tube_d_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
-        tube_d_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_xz = -tube_d_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
-        tube_d_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_yx = tube_d_G_m2_in_axes2_x*tube_n_m2_in_axes2_y -
-        tube_d_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
-    const real tube_d_G_m_in_axes2_yy = tube_d_G_m2_in_axes2_y*tube_n_m2_in_axes2_y -
-        tube_d_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
-    const real tube_d_G_m_in_axes2_yz = tube_d_G_m2_in_axes2_z*tube_n_m2_in_axes2_y -
-        tube_d_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
-    const real tube_d_G_m_in_axes2_zx = tube_d_G_m1_in_axes2_x*tube_n_m1_in_axes2_z +
-        tube_d_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_zy = tube_d_G_m1_in_axes2_y*tube_n_m1_in_axes2_z +
-        tube_d_G_m3_in_axes2_y*tube_n_m3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*tube_n_m1_in_axes2_z +
-        tube_d_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
-    /* (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
-    const real tube_dalpha_c_in_axes2_xx = tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_y[i] -
-        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_x;
-    const real tube_dalpha_c_in_axes2_xy = tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_y[i] -
-        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_y;
-    const real tube_dalpha_c_in_axes2_xz = tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_y[i] -
-        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_z;
-    /* (tube-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real tube_d_c_in_axes2_xy = m->tube_h_3_in_spec2_y[i]*tube_w_1_t_78 -
-        m->tube_h_3_in_spec2_z[i]*tube_w_2_in_axes2_y;
-    const real tube_d_c_in_axes2_xz = tube_d_alpha_1_t*m->tube_h_3_in_spec2_y[i] -
-        m->tube_h_3_in_spec2_z[i]*tube_w_2_in_axes2_z;
-    /* (tube-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real axis_x_tube_axes2_x = v.tube_n_c1_y*v.tube_n_c2_z -
-        v.tube_n_c1_z*v.tube_n_c2_y;
-    const real axis_x_tube_axes2_y = v.tube_n_c1_z*v.tube_n_c2_x -
-        v.tube_n_c1_x*v.tube_n_c2_z;
-    const real axis_x_tube_axes2_z = v.tube_n_c1_x*v.tube_n_c2_y -
-        v.tube_n_c1_y*v.tube_n_c2_x;
-    const real tube_Q_t = tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y - m->tube_link3_mass[i] +
-        tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y;
-    const real tube_Q_t_2 = R(0.5)*tube_Q_t;
-    const real tube_Q_t_3 = tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - m->tube_link3_mass[i]
-        + tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z;
-    const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
-    const real tube_Q_t_5 = tube_Q_t_2*v.tube_n_c1_x -
-        axis_x_tube_axes2_x*tube_d_c_in_axes2_xy + tube_d_G_in_axes2_yz*v.tube_n_c2_x;
-    const real tube_Q_t_6 = tube_Q_t_2*v.tube_n_c1_y -
-        axis_x_tube_axes2_y*tube_d_c_in_axes2_xy + tube_d_G_in_axes2_yz*v.tube_n_c2_y;
-    const real tube_Q_t_7 = tube_Q_t_2*v.tube_n_c1_z -
-        axis_x_tube_axes2_z*tube_d_c_in_axes2_xy + tube_d_G_in_axes2_yz*v.tube_n_c2_z;
-    const real tube_Q_t_8 = tube_Q_t_4*v.tube_n_c2_x -
-        axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
-    const real tube_Q_t_9 = tube_Q_t_4*v.tube_n_c2_y -
-        axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
-    const real tube_Q_t_10 = tube_Q_t_4*v.tube_n_c2_z -
-        axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
-    const real tube_Q_t_11 = tube_Q_t_8*v.tube_n_c2_x + tube_Q_t_5*v.tube_n_c1_x;
-    const real tube_Q_xx = m->tube_link3_mass[i] + 2*tube_Q_t_11;
-    const real tube_Q_xy = tube_Q_t_8*v.tube_n_c2_y + tube_Q_t_9*v.tube_n_c2_x +
-        tube_Q_t_5*v.tube_n_c1_y + tube_Q_t_6*v.tube_n_c1_x;
-    const real tube_Q_xz = tube_Q_t_10*v.tube_n_c2_x + tube_Q_t_8*v.tube_n_c2_z +
-        tube_Q_t_5*v.tube_n_c1_z + tube_Q_t_7*v.tube_n_c1_x;
-    const real tube_Q_t_12 = tube_Q_t_9*v.tube_n_c2_y + tube_Q_t_6*v.tube_n_c1_y;
-    const real tube_Q_yy = m->tube_link3_mass[i] + 2*tube_Q_t_12;
-    const real tube_Q_yz = tube_Q_t_10*v.tube_n_c2_y + tube_Q_t_9*v.tube_n_c2_z +
-        tube_Q_t_6*v.tube_n_c1_z + tube_Q_t_7*v.tube_n_c1_y;
-    const real tube_Q_t_13 = tube_Q_t_10*v.tube_n_c2_z + tube_Q_t_7*v.tube_n_c1_z;
-    const real tube_Q_zz = m->tube_link3_mass[i] + 2*tube_Q_t_13;
-    /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
-       actuation */
-    const real tube_dalpha_c_m_zz =
-        axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
-        tube_dalpha_G_m_in_axes2_yx*v.tube_n_c1_z - tube_dalpha_G_m_in_axes2_zx*v.tube_n_c2_z)
-        + v.tube_n_c1_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
-        tube_dalpha_G_m_in_axes2_yy*v.tube_n_c1_z - tube_dalpha_G_m_in_axes2_zy*v.tube_n_c2_z)
-        + v.tube_n_c2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
-        tube_dalpha_G_m_in_axes2_yz*v.tube_n_c1_z -
-        tube_dalpha_G_m_in_axes2_zz*v.tube_n_c2_z);
-    /* (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without
-       actuation */
-    const real tube_d_c_m_t = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx -
-        tube_d_G_m_in_axes2_yx*v.tube_n_c1_x - tube_d_G_m_in_axes2_zx*v.tube_n_c2_x;
-    const real tube_d_c_m_t_2 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx -
-        tube_d_G_m_in_axes2_yx*v.tube_n_c1_y - tube_d_G_m_in_axes2_zx*v.tube_n_c2_y;
-    const real tube_d_c_m_t_3 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy -
-        tube_d_G_m_in_axes2_yy*v.tube_n_c1_x - tube_d_G_m_in_axes2_zy*v.tube_n_c2_x;
-    const real tube_d_c_m_t_4 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy -
-        tube_d_G_m_in_axes2_yy*v.tube_n_c1_y - tube_d_G_m_in_axes2_zy*v.tube_n_c2_y;
-    const real tube_d_c_m_t_5 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz -
-        tube_d_G_m_in_axes2_yz*v.tube_n_c1_x - tube_d_G_m_in_axes2_zz*v.tube_n_c2_x;
-    const real tube_d_c_m_t_6 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz -
-        tube_d_G_m_in_axes2_yz*v.tube_n_c1_y - tube_d_G_m_in_axes2_zz*v.tube_n_c2_y;
-    const real tube_d_c_m_xx = axis_x_tube_axes2_x*tube_d_c_m_t + tube_d_c_m_t_3*v.tube_n_c1_x
-        + tube_d_c_m_t_5*v.tube_n_c2_x;
-    const real tube_d_c_m_xy = axis_x_tube_axes2_y*tube_d_c_m_t + tube_d_c_m_t_3*v.tube_n_c1_y
-        + tube_d_c_m_t_5*v.tube_n_c2_y;
-    const real tube_d_c_m_xz = axis_x_tube_axes2_z*tube_d_c_m_t + tube_d_c_m_t_3*v.tube_n_c1_z
-        + tube_d_c_m_t_5*v.tube_n_c2_z;
-    const real tube_d_c_m_yx = axis_x_tube_axes2_x*tube_d_c_m_t_2 +
-        tube_d_c_m_t_4*v.tube_n_c1_x + tube_d_c_m_t_6*v.tube_n_c2_x;
-    /* (M_ta) */
-    const real tube_M_ta_t = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
-        tube_dalpha_G_in_axes2_yx*v.tube_n_c1_x - tube_dalpha_G_in_axes2_zx*v.tube_n_c2_x;
-    const real tube_M_ta_t_2 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
-        tube_dalpha_G_in_axes2_yx*v.tube_n_c1_y - tube_dalpha_G_in_axes2_zx*v.tube_n_c2_y;
-    const real tube_M_ta_t_3 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
-        tube_dalpha_G_in_axes2_yx*v.tube_n_c1_z - tube_dalpha_G_in_axes2_zx*v.tube_n_c2_z;
-    const real tube_M_ta_t_4 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
-        tube_dalpha_G_in_axes2_yy*v.tube_n_c1_x - tube_dalpha_G_in_axes2_zy*v.tube_n_c2_x;
-    const real tube_M_ta_t_5 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
-        tube_dalpha_G_in_axes2_yy*v.tube_n_c1_y - tube_dalpha_G_in_axes2_zy*v.tube_n_c2_y;
-    const real tube_M_ta_t_6 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
-        tube_dalpha_G_in_axes2_yy*v.tube_n_c1_z - tube_dalpha_G_in_axes2_zy*v.tube_n_c2_z;
-    const real tube_M_ta_t_7 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
-        tube_dalpha_G_in_axes2_yz*v.tube_n_c1_x - tube_dalpha_G_in_axes2_zz*v.tube_n_c2_x;
-    const real tube_M_ta_t_8 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
-        tube_dalpha_G_in_axes2_yz*v.tube_n_c1_y - tube_dalpha_G_in_axes2_zz*v.tube_n_c2_y;
-    const real tube_M_ta_t_9 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
-        tube_dalpha_G_in_axes2_yz*v.tube_n_c1_z - tube_dalpha_G_in_axes2_zz*v.tube_n_c2_z;
-    const real tube_M_ta_t_10 = tube_Q_xy*v.tube_q_z;
-    const real tube_M_ta_t_11 = tube_Q_xz*v.tube_q_y;
-    const real tube_M_ta_t_12 = tube_Q_yz*v.tube_q_x;
-    const real tube_M_ta_t_13 = tube_M_ta_t_11 - axis_x_tube_axes2_x*tube_M_ta_t -
-        tube_M_ta_t_4*v.tube_n_c1_x - tube_M_ta_t_7*v.tube_n_c2_x - tube_M_ta_t_10;
-    const real tube_M_ta_t_14 = tube_Q_xx*v.tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t -
-        tube_M_ta_t_4*v.tube_n_c1_y - tube_M_ta_t_7*v.tube_n_c2_y - tube_Q_xz*v.tube_q_x;
-    const real tube_M_ta_t_15 = tube_Q_xy*v.tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t -
-        tube_M_ta_t_4*v.tube_n_c1_z - tube_M_ta_t_7*v.tube_n_c2_z - tube_Q_xx*v.tube_q_y;
-    const real tube_M_ta_t_16 = tube_Q_yz*v.tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 -
-        tube_M_ta_t_5*v.tube_n_c1_x - tube_M_ta_t_8*v.tube_n_c2_x - tube_Q_yy*v.tube_q_z;
-    const real tube_M_ta_t_17 = tube_M_ta_t_10 - axis_x_tube_axes2_y*tube_M_ta_t_2 -
-        tube_M_ta_t_5*v.tube_n_c1_y - tube_M_ta_t_8*v.tube_n_c2_y - tube_M_ta_t_12;
-    const real tube_M_ta_t_18 = tube_Q_yy*v.tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 -
-        tube_M_ta_t_5*v.tube_n_c1_z - tube_M_ta_t_8*v.tube_n_c2_z - tube_Q_xy*v.tube_q_y;
-    const real tube_M_ta_t_19 = tube_Q_zz*v.tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 -
-        tube_M_ta_t_6*v.tube_n_c1_x - tube_M_ta_t_9*v.tube_n_c2_x - tube_Q_yz*v.tube_q_z;
-    const real tube_M_ta_t_20 = tube_Q_xz*v.tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 -
-        tube_M_ta_t_6*v.tube_n_c1_y - tube_M_ta_t_9*v.tube_n_c2_y - tube_Q_zz*v.tube_q_x;
-    const real tube_M_ta_t_21 = tube_M_ta_t_12 - axis_x_tube_axes2_z*tube_M_ta_t_3 -
-        tube_M_ta_t_6*v.tube_n_c1_z - tube_M_ta_t_9*v.tube_n_c2_z - tube_M_ta_t_11;
-    /* (M_aa) */
-    const real tube_M_aa_t = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
-        tube_dalpha_G_m_in_axes2_yx*v.tube_n_c1_x - tube_dalpha_G_m_in_axes2_zx*v.tube_n_c2_x;
-    const real tube_M_aa_t_2 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
-        tube_dalpha_G_m_in_axes2_yx*v.tube_n_c1_y - tube_dalpha_G_m_in_axes2_zx*v.tube_n_c2_y;
-    const real tube_M_aa_t_3 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
-        tube_dalpha_G_m_in_axes2_yy*v.tube_n_c1_x - tube_dalpha_G_m_in_axes2_zy*v.tube_n_c2_x;
-    const real tube_M_aa_t_4 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
-        tube_dalpha_G_m_in_axes2_yy*v.tube_n_c1_y - tube_dalpha_G_m_in_axes2_zy*v.tube_n_c2_y;
-    const real tube_M_aa_t_5 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
-        tube_dalpha_G_m_in_axes2_yz*v.tube_n_c1_x - tube_dalpha_G_m_in_axes2_zz*v.tube_n_c2_x;
-    const real tube_M_aa_t_6 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
-        tube_dalpha_G_m_in_axes2_yz*v.tube_n_c1_y - tube_dalpha_G_m_in_axes2_zz*v.tube_n_c2_y;
-    const real tube_M_aa_t_7 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx -
-        tube_d_G_m_in_axes2_yx*v.tube_n_c1_z - tube_d_G_m_in_axes2_zx*v.tube_n_c2_z;
-    const real tube_M_aa_t_8 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy -
-        tube_d_G_m_in_axes2_yy*v.tube_n_c1_z - tube_d_G_m_in_axes2_zy*v.tube_n_c2_z;
-    const real tube_M_aa_t_9 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
-        tube_d_G_m_in_axes2_yz*v.tube_n_c1_z - tube_d_G_m_in_axes2_zz*v.tube_n_c2_z;
-    const real tube_M_aa_t_10 = tube_d_c_m_xy*v.tube_q_z - axis_x_tube_axes2_x*tube_M_aa_t -
-        tube_M_aa_t_3*v.tube_n_c1_x - tube_M_aa_t_5*v.tube_n_c2_x - tube_d_c_m_xz*v.tube_q_y +
-        tube_M_ta_t_19*v.tube_q_y - tube_M_ta_t_16*v.tube_q_z;
-    const real tube_M_aa_t_11 = tube_d_c_m_xz*v.tube_q_x - axis_x_tube_axes2_y*tube_M_aa_t -
-        tube_M_aa_t_3*v.tube_n_c1_y - tube_M_aa_t_5*v.tube_n_c2_y - tube_d_c_m_xx*v.tube_q_z +
-        tube_M_ta_t_20*v.tube_q_y - tube_M_ta_t_17*v.tube_q_z;
-    const real tube_M_aa_t_12 = tube_d_c_m_xx*v.tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t -
-        tube_M_aa_t_3*v.tube_n_c1_z - tube_M_aa_t_5*v.tube_n_c2_z - tube_d_c_m_xy*v.tube_q_x +
-        tube_M_ta_t_21*v.tube_q_y - tube_M_ta_t_18*v.tube_q_z;
-    const real tube_M_aa_t_13 = v.tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 +
-        tube_d_c_m_t_4*v.tube_n_c1_z + tube_d_c_m_t_6*v.tube_n_c2_z) -
-        axis_x_tube_axes2_y*tube_M_aa_t_2 - tube_M_aa_t_4*v.tube_n_c1_y -
-        tube_M_aa_t_6*v.tube_n_c2_y - tube_d_c_m_yx*v.tube_q_z + tube_M_ta_t_14*v.tube_q_z -
-        tube_M_ta_t_20*v.tube_q_x;
-    const real tube_M_aa_t_14 = tube_d_c_m_yx*v.tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t_2 -
-        tube_M_aa_t_4*v.tube_n_c1_z - tube_M_aa_t_6*v.tube_n_c2_z -
-        v.tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 + tube_d_c_m_t_4*v.tube_n_c1_y +
-        tube_d_c_m_t_6*v.tube_n_c2_y) + tube_M_ta_t_15*v.tube_q_z - tube_M_ta_t_21*v.tube_q_x;
-    const real tube_M_aa_t_15 = v.tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 +
-        tube_M_aa_t_8*v.tube_n_c1_x + tube_M_aa_t_9*v.tube_n_c2_x) -
-        v.tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + tube_M_aa_t_8*v.tube_n_c1_y +
-        tube_M_aa_t_9*v.tube_n_c2_y) - tube_dalpha_c_m_zz + tube_M_ta_t_18*v.tube_q_x -
-        tube_M_ta_t_15*v.tube_q_y;
+    stage_tube_M_dynamics(m, i, &v);
     /* (M_tt) */
-    gather(&terms[0*count + k], add, tube_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, tube_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, tube_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, tube_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, tube_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, tube_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[0*count + k], add, v.tube_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.tube_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.tube_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.tube_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.tube_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.tube_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) */
-    gather(&terms[6*count + k], add, tube_M_ta_t_13);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, tube_M_ta_t_14);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, tube_M_ta_t_15);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, tube_M_ta_t_16);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, tube_M_ta_t_17);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, tube_M_ta_t_18);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, tube_M_ta_t_19);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, tube_M_ta_t_20);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, tube_M_ta_t_21);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.tube_M_ta_t_13);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.tube_M_ta_t_14);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.tube_M_ta_t_15);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.tube_M_ta_t_16);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.tube_M_ta_t_17);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v.tube_M_ta_t_18);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.tube_M_ta_t_19);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.tube_M_ta_t_20);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.tube_M_ta_t_21);  /* M_ta_zz */
     /* (M_aa) */
-    gather(&terms[15*count + k], add, tube_M_aa_t_10);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, tube_M_aa_t_11);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, tube_M_aa_t_12);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, tube_M_aa_t_13);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, tube_M_aa_t_14);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, tube_M_aa_t_15);  /* M_aa_zz_of_legs */
+    gather(&terms[15*count + k], add, v.tube_M_aa_t_10);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.tube_M_aa_t_11);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.tube_M_aa_t_12);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.tube_M_aa_t_13);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.tube_M_aa_t_14);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.tube_M_aa_t_15);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
-        UNLESS(magnitude(tube_size_c3) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5)
-        + UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
-        LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
-        UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
 }
 
-INLINE void M_place_tube(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_tube(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -5629,37 +4415,37 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -5713,9 +4499,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[18] = {0}, sums[21] = {0};
+    real s[27] = {0}, sums[21] = {0};
     real terms_ups[21*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[21*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
     values v;
@@ -5740,19 +4526,18 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
     }
-    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
-    real s[18*LANES], sums[21*LANES];
+    real s[27*LANES], sums[21*LANES];
     real o_ups[LANES];
     real o_tube[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         M_before(m, LANES, k, X, &v, s, t);
-        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -5778,7 +4563,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 
 /* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -5795,14 +4580,13 @@ INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, value
 
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[9*w + k] = v->Z_p_x;
-    s[10*w + k] = v->Z_p_y;
-    s[11*w + k] = v->Z_p_z;
-    s[12*w + k] = v->Z_q_x;
-    s[13*w + k] = v->Z_q_y;
-    s[14*w + k] = v->Z_q_z;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -5810,7 +4594,7 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    stage_ups_V_X(w, j, V, &v);
+    stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_Z_dynamics(m, w, i, j, V, &v);
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
@@ -5825,7 +4609,7 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void Z_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -5835,187 +4619,16 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
 {
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
-    stage_tube_V_X(w, j, V, &v);
+    stage_tube_V_X(m, w, i, j, V, &v);
     stage_tube_Z_dynamics(m, i, &v);
-    stage_tube_Z_joint_accelerations(&v);
-    /* (tube-W_2) centripetal tensor of link 2 */
-    const real tube_W_2_in_axes2_xy = v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_y;
-    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-    const real tube_bias_t = v.tube_W_2_in_axes2_xz*v.tube_q_3;
-    const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*v.tube_q_3;
-    const real tube_bias_t_4 = v.tube_bias_t_3*v.tube_qd_2;
-    const real tube_bias_t_5 = v.tube_bias_t_3*v.tube_omega_1_in_axes2_y;
-    const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
-    const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
-    /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
-        v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
-        tube_bias_in_axes2_y;
-    const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
-        v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
-        tube_bias_in_axes2_z;
-    /* (tube-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real tube_qdd_1_o_t = R(1.35)*v.tube_nu_1;
-    const real tube_qdd_1_o_t_2 = R(1.35)*v.tube_nu_2;
-    const real tube_qdd_1_o_t_3 = R(1.35)*v.tube_nu_3;
-    const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(v.tube_qd_1_t*tube_rel_o_in_axes2_y -
-        v.tube_qd_1_t_4*tube_qdd_1_o_t_2 + v.tube_qd_1_t_2*tube_rel_o_in_axes2_z +
-        v.tube_qd_1_t_3*tube_qdd_1_o_t + v.tube_qd_1_t_5*tube_qdd_1_o_t_3);
-    /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t_2*v.tube_w_1_t_67 +
-        tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_qdd_1_o_t*v.tube_w_1_t_66 +
-        tube_qdd_1_o_t_3*v.tube_w_1_t_68 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
-        tube_qdd_1_o*v.tube_w_1_t_69);
-    const real tube_qdd_2_o_t_2 = v.inv_tube_w_1_t_49*(tube_rel_o_in_axes2_y*v.tube_w_1_t_50 +
-        v.inv_tube_w_1_t_49*tube_rel_o_in_axes2_z + tube_qdd_1_o_t*v.tube_w_1_t_51 +
-        tube_qdd_1_o_t_3*v.tube_w_1_t_52 + tube_qdd_1_o*v.tube_w_1_t_58 +
-        tube_qdd_2_o_t*v.tube_w_1_t_53);
-    const real tube_qdd_2_o_t_3 = tube_rel_o_in_axes2_y*v.tube_w_1_t_14 +
-        tube_qdd_1_o_t*v.tube_w_1_t_15 + tube_qdd_1_o_t_3*v.tube_w_1_t_16 -
-        tube_qdd_1_o*v.tube_w_1_t_29 - tube_qdd_2_o_t*v.tube_w_1_t_25 +
-        tube_qdd_2_o_t_2*v.tube_w_1_t_21 +
-        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_rel_o_in_axes2_y*v.tube_w_1_t_34 +
-        tube_qdd_1_o_t*v.tube_w_1_t_35 + tube_qdd_1_o_t_3*v.tube_w_1_t_36 +
-        tube_qdd_1_o*v.tube_w_1_t_45 + tube_qdd_2_o_t*v.tube_w_1_t_41 -
-        tube_qdd_2_o_t_2*v.tube_w_1_t_37);
-    const real tube_qdd_2_o = v.inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
-    /* (tube-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real tube_alpha_1_o_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qdd_1_o;
-    const real tube_alpha_1_o_in_axes2_y = -v.tube_c_2*tube_qdd_1_o;
-    /* (tube-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real tube_alpha_2_o_in_axes2_x = v.tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
-    const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - v.tube_W_2_in_axes2_xz;
-    /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real tube_B_2_o_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2_o;
-    const real tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o;
-    const real tube_B_2_o_in_axes2_zx = v.tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
-    const real tube_B_2_o_in_axes2_zy = v.tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
-    /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 - v.tube_g_in_axes2_y - tube_bias_t_2 +
-        v.tube_q_3*tube_qdd_2_o;
-    const real tube_acc_3_o_in_axes2_z = tube_bias_t - v.tube_g_in_axes2_z - tube_bias_t_5 -
-        tube_alpha_2_o_in_axes2_y*v.tube_q_3;
-    /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
-    const real tube_f_3_o_t = v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_x;
-    const real tube_f_3_o_t_2 = v.tube_omega_1_in_axes2_y*v.tube_omega_1_in_axes2_y;
-    const real tube_f_3_o_t_3 = v.tube_qd_2*v.tube_qd_2;
-    const real tube_f_3_o_in_axes2_x = v.tube_acc_3_o_in_axes2_x*m->tube_link3_mass[i] -
-        m->tube_h_3_in_spec2_x[i]*(tube_f_3_o_t_2 + tube_f_3_o_t_3) +
-        tube_alpha_1_o_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_h_3_in_spec2_z[i];
-    const real tube_f_3_o_in_axes2_y = m->tube_h_3_in_spec2_z[i]*(tube_f_3_o_t +
-        tube_f_3_o_t_3) - tube_alpha_1_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
-        tube_B_2_o_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
-        tube_acc_3_o_in_axes2_y*m->tube_link3_mass[i];
-    const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
-        m->tube_h_3_in_spec2_y[i]*(tube_f_3_o_t + tube_f_3_o_t_2) +
-        tube_acc_3_o_in_axes2_z*m->tube_link3_mass[i] -
-        tube_B_2_o_in_axes2_zy*m->tube_h_3_in_spec2_z[i];
-    /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real tube_mu_2_o_in_axes2_x = v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_z[i] +
-        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_y[i] +
-        m->tube_J_group_2_in_axes2_yz[i]*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
-        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_x +
-        tube_B_2_o_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] -
-        tube_B_2_o_in_axes2_zx*m->tube_J_group_2_in_axes2_xy[i] -
-        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_z[i] +
-        tube_B_2_o_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] -
-        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_y[i];
-    const real tube_mu_2_o_in_axes2_y = v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_x[i] -
-        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_y[i] +
-        v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] -
-        m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_o_t - tube_f_3_o_t_3) +
-        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_y +
-        tube_B_2_o_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] -
-        tube_B_2_o_in_axes2_zx*m->tube_Sigma_2_in_axes2_xx[i] -
-        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_x[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i];
-    const real tube_mu_2_o_in_axes2_z = v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_z[i] -
-        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_z[i] -
-        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_x[i] +
-        m->tube_J_group_2_in_axes2_xy[i]*(tube_f_3_o_t - tube_f_3_o_t_2) +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_o_in_axes2_x +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_o_in_axes2_y +
-        tube_B_2_o_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i] +
-        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_x[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i];
-    /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-       connection point left out */
-    const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
-        tube_f_3_o_in_axes2_z*v.tube_q_3;
-    const real tube_N_2_o_in_axes2_z = tube_f_3_o_in_axes2_y*v.tube_q_3 +
-        tube_mu_2_o_in_axes2_z;
-    /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
-    const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
-    const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
-        tube_G_o_t_2*v.tube_w_1_t_37);
-    const real tube_G_o_t_4 = v.inv_tube_w_1_t_63*(tube_G_o_t_2*v.tube_w_1_t_41 -
-        tube_G_o_t*v.tube_w_1_t_25 + tube_G_o_t_3*v.tube_w_1_t_53);
-    const real tube_G_o_t_5 = v.inv_tube_w_1_t_75*(tube_N_2_o_in_axes2_y*v.tube_c_2 -
-        v.tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x + tube_G_o_t*v.tube_w_1_t_29 -
-        tube_G_o_t_2*v.tube_w_1_t_45 - tube_G_o_t_3*v.tube_w_1_t_58 +
-        tube_G_o_t_4*v.tube_w_1_t_69);
-    const real tube_G_o_in_axes2_y = tube_G_o_t*v.tube_w_1_t_14 + tube_G_o_t_2*v.tube_w_1_t_34
-        + tube_G_o_t_3*v.tube_w_1_t_50 + tube_G_o_t_4*v.tube_w_1_t_64 -
-        tube_G_o_t_5*v.tube_qd_1_t;
-    const real tube_G_o_in_axes2_z = v.inv_tube_w_1_t_49*tube_G_o_t_3 +
-        tube_G_o_t_4*v.tube_w_1_t_65 - tube_G_o_t_5*v.tube_qd_1_t_2;
-    /* (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real tube_G_m1_o_t = tube_G_o_t*v.tube_w_1_t_15 + tube_G_o_t_2*v.tube_w_1_t_35 +
-        tube_G_o_t_3*v.tube_w_1_t_51 + tube_G_o_t_4*v.tube_w_1_t_66 -
-        tube_G_o_t_5*v.tube_qd_1_t_3;
-    const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
-    /* (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real tube_G_m2_o_t = tube_G_o_t_4*v.tube_w_1_t_67 + tube_G_o_t_5*v.tube_qd_1_t_4;
-    const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
-    /* (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real tube_G_m3_o_t = tube_G_o_t*v.tube_w_1_t_16 + tube_G_o_t_2*v.tube_w_1_t_36 +
-        tube_G_o_t_3*v.tube_w_1_t_52 + tube_G_o_t_4*v.tube_w_1_t_68 -
-        tube_G_o_t_5*v.tube_qd_1_t_5;
-    const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
-    /* (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v.tube_end_p2_in_axes2_y -
-        tube_G_m3_o*v.tube_end_p3_in_axes2_z;
-    const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v.tube_n_m2_in_axes2_y -
-        tube_G_m1_o*v.tube_end_p1_in_axes2_z;
-    const real tube_G_m_o_in_axes2_z = tube_G_m1_o*v.tube_n_m1_in_axes2_z +
-        tube_G_m3_o*v.tube_n_m3_in_axes2_z;
-    /* (tube-U) velocity and gravity terms of the leg force */
-    const real tube_U_x = v.axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
-        v.axis_y_tube_axes2_x*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
-    const real tube_U_y = v.axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
-        v.axis_y_tube_axes2_y*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
-    const real tube_U_z = v.axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
-        v.axis_y_tube_axes2_z*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
-    /* (Z_a) */
-    const real tube_Z_a_t = v.axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
-        v.axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
-        v.axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z + tube_U_z*v.tube_q_y -
-        tube_U_y*v.tube_q_z;
-    const real tube_Z_a_t_2 = v.axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
-        v.axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y +
-        v.axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z + tube_U_x*v.tube_q_z -
-        tube_U_z*v.tube_q_x;
-    const real tube_Z_a_t_3 = v.axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
-        v.axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y +
-        v.axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + tube_U_y*v.tube_q_x -
-        tube_U_x*v.tube_q_y;
     /* (Z_t) */
-    gather(&terms[0*count + k], add, tube_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, tube_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, tube_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[0*count + k], add, v.tube_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.tube_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.tube_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) */
-    gather(&terms[3*count + k], add, tube_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, tube_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, tube_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[3*count + k], add, v.tube_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v.tube_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v.tube_Z_a_t_3);  /* Z_a_z_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
         + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
@@ -6024,32 +4637,32 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
         LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
 }
 
-INLINE void Z_place_tube(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_tube(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
-    const real Z_p_x = s[9*w + k];
+    const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[10*w + k];
+    const real Z_p_y = s[19*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[11*w + k];
+    const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[12*w + k];
+    const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[13*w + k];
+    const real Z_q_y = s[22*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[14*w + k];
+    const real Z_q_z = s[23*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
@@ -6062,9 +4675,9 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[6*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
     values v;
@@ -6093,10 +4706,10 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_ups[LANES];
     real o_tube[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -6128,7 +4741,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 
 /* ---- H ---- */
 INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -6148,26 +4761,22 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-    const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
-    const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
-    const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
     /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.ups_w_3_x;
-    o[1*count + k] = v.ups_w_3_y;
-    o[2*count + k] = v.ups_w_3_z;
-    /* (ups-H_a_3) */
-    o[3*count + k] = ups_H_a_3_x;
-    o[4*count + k] = ups_H_a_3_y;
-    o[5*count + k] = ups_H_a_3_z;
-    o[7*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + (ups_H_a_3_x + (ups_H_a_3_y
-        + ups_H_a_3_z));
+    o[0*count + k] = v.axis_x_ups_axes2_x;
+    o[1*count + k] = v.axis_x_ups_axes2_y;
+    o[2*count + k] = v.axis_x_ups_axes2_z;
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.ups_H_a_3_x;
+    o[4*count + k] = v.ups_H_a_3_y;
+    o[5*count + k] = v.ups_H_a_3_z;
+    o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
+        (v.ups_H_a_3_x + (v.ups_H_a_3_y + v.ups_H_a_3_z));
     o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void H_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -6179,9 +4788,9 @@ INLINE void H_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[7*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
     values v;
     H_before(m, 1, 0, X, &v, s, t);
@@ -6193,9 +4802,10 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_ups[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -6213,7 +4823,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 
 /* ---- Hk ---- */
 INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -6233,138 +4843,38 @@ INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t
 {
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
-    /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
-        v.tube_n_m1_t_11*v.tube_s_1) -
-        v.tube_c_2*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_yx[i] +
-        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_yy[i] +
-        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_yz[i]);
-    /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-    const real tube_n_m2_t = v.tube_n_m1_t_7*m->tube_platform_joint_rotation_zx[i] +
-        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_zy[i] +
-        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_zz[i];
-    const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*m->tube_platform_joint_rotation_zx[i]
-        + v.tube_n_m1_t_2*m->tube_platform_joint_rotation_zy[i] +
-        v.tube_n_m1_t_3*m->tube_platform_joint_rotation_zz[i]) +
-        v.tube_s_1*(v.tube_n_m1_t_4*m->tube_platform_joint_rotation_zx[i] +
-        v.tube_n_m1_t_5*m->tube_platform_joint_rotation_zy[i] +
-        v.tube_n_m1_t_6*m->tube_platform_joint_rotation_zz[i]);
-    const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
-        v.tube_e_1_in_axes2_x*tube_n_m2_t;
-    const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
-        v.tube_c_2*tube_n_m2_t;
-    const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
-        v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
-    /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-    const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
-        v.tube_n_m3_t_2*v.tube_s_1) +
-        v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_xx[i] +
-        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_xy[i] +
-        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_xz[i]);
-    const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
-    /* (tube-f_c1) force part of constraint wrench 1 */
-    const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-        tube_n_m1_in_axes2_z*tube_n_m3_t_3;
-    /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
-    const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-    const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
-    /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
-    const real tube_m3_c1_t = inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
-    /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
-    const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
-    /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
-    const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
-    /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-    const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
-    /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-    const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
-    /* (tube-mu_c1) the moment that goes with it */
-    const real tube_mu_c1_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c1_t;
-    const real tube_mu_c1_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_m3_c1_t;
-    const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
-        tube_m3_c1_t*tube_n_m3_in_axes2_z;
-    /* (tube-mu_c2) the moment that goes with it */
-    const real tube_mu_c2_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c2_t;
-    const real tube_mu_c2_t = v.tube_end_p3_in_axes2_z*tube_m3_c2;
-    const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
-        tube_m1_c2_t*tube_n_m1_in_axes2_z;
-    /* (tube-size_c3) size of the moment */
-    const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
-    /* (tube-mu1_c3) moment along direction 1 that goes with it */
-    const real inv_tube_size_c3 = 1/tube_size_c3;
-    const real tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3;
-    /* (tube-mu3_c3) moment along direction 3 that goes with it */
-    const real tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t;
-    /* (tube-mu_c3) the moment that goes with it */
-    const real axis_x_tube_axes2_x = v.tube_n_c1_y*v.tube_n_c2_z -
-        v.tube_n_c1_z*v.tube_n_c2_y;
-    const real axis_x_tube_axes2_y = v.tube_n_c1_z*v.tube_n_c2_x -
-        v.tube_n_c1_x*v.tube_n_c2_z;
-    const real axis_x_tube_axes2_z = v.tube_n_c1_x*v.tube_n_c2_y -
-        v.tube_n_c1_y*v.tube_n_c2_x;
-    const real tube_mu_c3_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_mu3_c3_t -
-        inv_tube_size_c3*tube_end_p2_in_axes2_y;
-    const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y -
-        v.tube_end_p1_in_axes2_z*tube_mu1_c3;
-    const real tube_mu_c3_in_axes2_z = tube_mu1_c3*tube_n_m1_in_axes2_z -
-        tube_mu3_c3_t*tube_n_m3_in_axes2_z;
-    const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
-        tube_mu_c3_in_axes2_y*v.tube_n_c1_x + tube_mu_c3_in_axes2_z*v.tube_n_c2_x;
-    const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
-        tube_mu_c3_in_axes2_y*v.tube_n_c1_y + tube_mu_c3_in_axes2_z*v.tube_n_c2_y;
-    const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
-        tube_mu_c3_in_axes2_y*v.tube_n_c1_z + tube_mu_c3_in_axes2_z*v.tube_n_c2_z;
-    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real tube_Hk_a_1_x = v.tube_n_c1_z*v.tube_q_y - v.tube_n_c1_y*v.tube_q_z +
-        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*v.tube_n_c1_x +
-        tube_mu_c1_in_axes2_z*v.tube_n_c2_x;
-    const real tube_Hk_a_1_y = v.tube_n_c1_x*v.tube_q_z - v.tube_n_c1_z*v.tube_q_x +
-        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*v.tube_n_c1_y +
-        tube_mu_c1_in_axes2_z*v.tube_n_c2_y;
-    const real tube_Hk_a_1_z = v.tube_n_c1_y*v.tube_q_x - v.tube_n_c1_x*v.tube_q_y +
-        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*v.tube_n_c1_z +
-        tube_mu_c1_in_axes2_z*v.tube_n_c2_z;
-    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-    const real tube_Hk_a_2_x = v.tube_n_c2_z*v.tube_q_y - v.tube_n_c2_y*v.tube_q_z +
-        tube_mu_c2_in_axes2_y*v.tube_n_c1_x + tube_mu_c2_in_axes2_z*v.tube_n_c2_x -
-        axis_x_tube_axes2_x*tube_mu_c2_t;
-    const real tube_Hk_a_2_y = v.tube_n_c2_x*v.tube_q_z - v.tube_n_c2_z*v.tube_q_x +
-        tube_mu_c2_in_axes2_y*v.tube_n_c1_y + tube_mu_c2_in_axes2_z*v.tube_n_c2_y -
-        axis_x_tube_axes2_y*tube_mu_c2_t;
-    const real tube_Hk_a_2_z = v.tube_n_c2_y*v.tube_q_x - v.tube_n_c2_x*v.tube_q_y +
-        tube_mu_c2_in_axes2_y*v.tube_n_c1_z + tube_mu_c2_in_axes2_z*v.tube_n_c2_z -
-        axis_x_tube_axes2_z*tube_mu_c2_t;
     /* (tube-n_c1) unit force of the constraint wrench */
-    o[0*count + k] = v.tube_n_c1_x;
-    o[1*count + k] = v.tube_n_c1_y;
-    o[2*count + k] = v.tube_n_c1_z;
-    /* (tube-Hk_a_1) */
-    o[3*count + k] = tube_Hk_a_1_x;
-    o[4*count + k] = tube_Hk_a_1_y;
-    o[5*count + k] = tube_Hk_a_1_z;
+    o[0*count + k] = v.axis_y_tube_axes2_x;
+    o[1*count + k] = v.axis_y_tube_axes2_y;
+    o[2*count + k] = v.axis_y_tube_axes2_z;
+    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.tube_Hk_a_1_x;
+    o[4*count + k] = v.tube_Hk_a_1_y;
+    o[5*count + k] = v.tube_Hk_a_1_z;
     /* (tube-n_c2) unit force of the constraint wrench */
-    o[6*count + k] = v.tube_n_c2_x;
-    o[7*count + k] = v.tube_n_c2_y;
-    o[8*count + k] = v.tube_n_c2_z;
-    /* (tube-Hk_a_2) */
-    o[9*count + k] = tube_Hk_a_2_x;
-    o[10*count + k] = tube_Hk_a_2_y;
-    o[11*count + k] = tube_Hk_a_2_z;
+    o[6*count + k] = v.axis_z_tube_axes2_x;
+    o[7*count + k] = v.axis_z_tube_axes2_y;
+    o[8*count + k] = v.axis_z_tube_axes2_z;
+    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.tube_Hk_a_2_x;
+    o[10*count + k] = v.tube_Hk_a_2_y;
+    o[11*count + k] = v.tube_Hk_a_2_z;
     /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
-    o[12*count + k] = tube_mu_c3_x;
-    o[13*count + k] = tube_mu_c3_y;
-    o[14*count + k] = tube_mu_c3_z;
-    o[16*count + k] = ((v.tube_n_c1_x + (v.tube_n_c1_y + v.tube_n_c1_z)) + ((tube_Hk_a_1_x +
-        tube_Hk_a_1_y) + (tube_Hk_a_1_z + v.tube_n_c2_x))) + (((v.tube_n_c2_y + v.tube_n_c2_z)
-        + (tube_Hk_a_2_x + tube_Hk_a_2_y)) + ((tube_Hk_a_2_z + tube_mu_c3_x) + (tube_mu_c3_y +
-        tube_mu_c3_z)));
+    o[12*count + k] = v.tube_mu_c3_x;
+    o[13*count + k] = v.tube_mu_c3_y;
+    o[14*count + k] = v.tube_mu_c3_z;
+    o[16*count + k] = ((v.axis_y_tube_axes2_x + (v.axis_y_tube_axes2_y +
+        v.axis_y_tube_axes2_z)) + ((v.tube_Hk_a_1_x + v.tube_Hk_a_1_y) + (v.tube_Hk_a_1_z +
+        v.axis_z_tube_axes2_x))) + (((v.axis_z_tube_axes2_y + v.axis_z_tube_axes2_z) +
+        (v.tube_Hk_a_2_x + v.tube_Hk_a_2_y)) + ((v.tube_Hk_a_2_z + v.tube_mu_c3_x) +
+        (v.tube_mu_c3_y + v.tube_mu_c3_z)));
     o[15*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
-        UNLESS(magnitude(tube_size_c3) > LEAST_4);
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4);
 }
 
 INLINE void Hk_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real *Hk,
-    verdict *t)
+    status_flags *t)
 {
     Hk[0*w + k] = o[0*count + at];
     Hk[NC*w + k] = o[1*count + at];
@@ -6385,9 +4895,9 @@ INLINE void Hk_place_tube(size_t w, size_t k, size_t at, size_t count, const rea
     t->total[k] += o[16*count + at];
 }
 
-APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
+APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_tube[17*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
     values v;
@@ -6400,9 +4910,10 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
     }
 }
 
-INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, verdict *restrict t)
+INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, status_flags
+    *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_tube[17*LANES];
     clear(Hk, NV*NC*LANES);
     for (size_t k = 0; k < LANES; ++k) {
@@ -6421,7 +4932,7 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, ve
 
 /* ---- constraint_bias ---- */
 INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, verdict *t)
+    *v, real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -6441,109 +4952,19 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t i, siz
 {
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
-    stage_tube_V_X(w, j, V, &v);
-    /* (tube-qd_1) rate of joint 1 */
-    const real tube_qd_1_t = R(1.35)*v.tube_eta_1;
-    const real tube_qd_1_t_2 = R(1.35)*v.tube_eta_2;
-    const real tube_qd_1_t_3 = R(1.35)*v.tube_eta_3;
-    const real tube_qd_1 =
-        v.inv_tube_w_1_t_75*(v.inv_tube_w_1_t_75*v.tube_S_dot_in_axes2_y*v.tube_w_1_t_70 +
-        v.inv_tube_w_1_t_75*v.tube_S_dot_in_axes2_z*v.tube_w_1_t_71 +
-        v.inv_tube_w_1_t_75*tube_qd_1_t*v.tube_w_1_t_72 +
-        v.inv_tube_w_1_t_75*tube_qd_1_t_3*v.tube_w_1_t_74 -
-        v.inv_tube_w_1_t_75*tube_qd_1_t_2*v.tube_w_1_t_73);
-    /* (tube-qd_2) rate of joint 2 */
-    const real tube_qd_2_t = v.inv_tube_w_1_t_63*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_64 +
-        v.tube_S_dot_in_axes2_z*v.tube_w_1_t_65 + tube_qd_1_t*v.tube_w_1_t_66 +
-        tube_qd_1_t_2*v.tube_w_1_t_67 + tube_qd_1_t_3*v.tube_w_1_t_68 -
-        tube_qd_1*v.tube_w_1_t_69);
-    const real tube_qd_2_t_2 =
-        v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*v.tube_S_dot_in_axes2_z +
-        v.tube_S_dot_in_axes2_y*v.tube_w_1_t_50 + tube_qd_1_t*v.tube_w_1_t_51 +
-        tube_qd_1_t_3*v.tube_w_1_t_52 + tube_qd_1*v.tube_w_1_t_58 +
-        tube_qd_2_t*v.tube_w_1_t_53);
-    const real tube_qd_2_t_3 = v.tube_S_dot_in_axes2_y*v.tube_w_1_t_14 +
-        tube_qd_1_t*v.tube_w_1_t_15 + tube_qd_1_t_3*v.tube_w_1_t_16 -
-        tube_qd_1*v.tube_w_1_t_29 - tube_qd_2_t*v.tube_w_1_t_25 +
-        tube_qd_2_t_2*v.tube_w_1_t_21 +
-        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_34 +
-        tube_qd_1_t*v.tube_w_1_t_35 + tube_qd_1_t_3*v.tube_w_1_t_36 +
-        tube_qd_1*v.tube_w_1_t_45 + tube_qd_2_t*v.tube_w_1_t_41 -
-        tube_qd_2_t_2*v.tube_w_1_t_37);
-    const real tube_qd_2 = v.inv_tube_w_1_t_13*tube_qd_2_t_3;
-    /* (tube-omega_1) angular velocity of link 1 */
-    const real tube_omega_1_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qd_1;
-    const real tube_omega_1_in_axes2_y = -v.tube_c_2*tube_qd_1;
-    /* (tube-W_2) centripetal tensor of link 2 */
-    const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
-    const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
-    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-    const real tube_bias_t = 2*v.tube_S_dot_in_axes2_x;
-    const real tube_bias_in_axes2_y =
-        tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*v.tube_q_3 + tube_bias_t*tube_qd_2;
-    const real tube_bias_in_axes2_z = 2*tube_W_2_in_axes2_xz*v.tube_q_3 -
-        tube_bias_t*tube_omega_1_in_axes2_y;
-    /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
-        v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
-        tube_bias_in_axes2_y;
-    const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
-        v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
-        tube_bias_in_axes2_z;
-    /* (tube-nd_m1) rate of moment direction 1 */
-    const real tube_nd_m1_in_axes2_y = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_y -
-        v.tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_x -
-        v.tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y;
-    const real tube_nd_m1_in_axes2_z = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_z -
-        v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_x - v.tube_end_p1_in_axes2_x*tube_qd_2;
-    /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real tube_nu_1_t = tube_omega_1_in_axes2_x - v.tube_omega_in_axes2_x;
-    const real tube_nu_1_t_2 = v.tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
-    const real tube_nu_1_t_3 = v.tube_omega_in_axes2_z - tube_qd_2;
-    const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
-        tube_nu_1_t*(v.tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y +
-        v.tube_end_p1_in_axes2_z*tube_qd_2);
-    const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v.tube_end_p1_in_axes2_z;
-    /* (tube-nd_m2) rate of moment direction 2 */
-    const real tube_nd_m2_in_axes2_x = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_x -
-        v.tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_z -
-        v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x;
-    const real tube_nd_m2_in_axes2_y = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_y -
-        v.tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_z -
-        v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
-    /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-    const real tube_nu_2_t = -tube_W_2_in_axes2_xz*v.tube_n_m2_in_axes2_y -
-        tube_W_2_in_axes2_yz*v.tube_end_p2_in_axes2_y;
-    const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
-        tube_nd_m2_in_axes2_x*tube_nu_1_t -
-        tube_nu_1_t_3*(-v.tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-        v.tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
-    const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
-    /* (tube-nd_m3) rate of moment direction 3 */
-    const real tube_nd_m3_in_axes2_x = v.tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_y -
-        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_x +
-        v.tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x;
-    const real tube_nd_m3_in_axes2_z = v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_y -
-        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_z + v.tube_end_p3_in_axes2_y*tube_qd_2;
-    /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-    const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-        tube_nu_1_t_2*(v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x +
-        v.tube_end_p3_in_axes2_z*tube_qd_2) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
-    const real tube_nu_3 = tube_W_2_in_axes2_yz*v.tube_end_p3_in_axes2_z - tube_nu_3_t;
+    stage_tube_V_X(m, w, i, j, V, &v);
     /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real tube_gamma_c1 = tube_rel_o_in_axes2_y - v.tube_m1_c1_t*tube_nu_1 -
-        v.tube_m3_c1_t*tube_nu_3;
+    const real tube_gamma_c1 = v.tube_rel_o_in_axes2_y - v.tube_m1_c1_t*v.tube_nu_1 -
+        v.tube_m3_c1_t*v.tube_nu_3;
     /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real tube_gamma_c2 = tube_rel_o_in_axes2_z + v.tube_m3_c2*tube_nu_3 -
-        v.tube_m1_c2_t*tube_nu_1;
+    const real tube_gamma_c2 = v.tube_rel_o_in_axes2_z + v.tube_m3_c2*v.tube_nu_3 -
+        v.tube_m1_c2_t*v.tube_nu_1;
     /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real tube_gamma_c3 = v.inv_tube_size_c3*tube_nu_2 + v.tube_mu1_c3*tube_nu_1 -
-        v.tube_mu3_c3_t*tube_nu_3;
+    const real tube_gamma_c3 = v.inv_tube_size_c3*v.tube_nu_2 + v.tube_mu1_c3*v.tube_nu_1 -
+        v.tube_mu3_c3_t*v.tube_nu_3;
     /* (tube-gamma_c1) */
     o[0*count + k] = tube_gamma_c1;
     /* (tube-gamma_c2) */
@@ -6560,7 +4981,7 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t i, siz
 }
 
 INLINE void constraint_bias_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o,
-    real *constraint_bias, verdict *t)
+    real *constraint_bias, status_flags *t)
 {
     constraint_bias[0*w + k] = o[0*count + at];
     constraint_bias[1*w + k] = o[1*count + at];
@@ -6570,9 +4991,9 @@ INLINE void constraint_bias_place_tube(size_t w, size_t k, size_t at, size_t cou
 }
 
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
-    *constraint_bias, verdict *t)
+    *constraint_bias, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
     values v;
     constraint_bias_before(m, 1, 0, X, &v, s, t);
@@ -6585,9 +5006,9 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 }
 
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
-    *restrict constraint_bias, verdict *restrict t)
+    *restrict constraint_bias, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -6604,10 +5025,12 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -6617,20 +5040,21 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
-    /* (W_p) centripetal tensor of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real W_p_xy = omega_x*omega_y;
-    const real omega_z = V[5*w + k];
-    const real W_p_xz = omega_x*omega_z;
-    const real W_p_yz = omega_y*omega_z;
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -6642,28 +5066,31 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
     const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
-    const real f_p_t = omega_x*omega_x;
-    const real f_p_t_2 = omega_y*omega_y;
-    const real f_p_t_3 = omega_z*omega_z;
+    const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
+        v->W_p_t_4*v->h_star_x;
+    const real f_p_y = a_t_y*m->m_star + v->B_p_yx*v->h_star_x + v->B_p_yz*v->h_star_z -
+        v->W_p_t_5*v->h_star_y;
+    const real f_p_z = a_t_z*m->m_star + v->B_p_zx*v->h_star_x + v->B_p_zy*v->h_star_y -
+        v->W_p_t_6*v->h_star_z;
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    const real mu_p_t = m->J_star_in_platform_xx*omega_in_platform_x +
+        m->J_star_in_platform_xy*omega_in_platform_y +
+        m->J_star_in_platform_xz*omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*omega_in_platform_x +
+        m->J_star_in_platform_yy*omega_in_platform_y +
+        m->J_star_in_platform_yz*omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*omega_in_platform_x +
+        m->J_star_in_platform_yz*omega_in_platform_y +
+        m->J_star_in_platform_zz*omega_in_platform_z;
+    const real alpha_x = A[3*w + k];
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
-        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
-    const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
-        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
-        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
-    /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
@@ -6671,29 +5098,29 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
         a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
+        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
         a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
+        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
         a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
     const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
         v->R_xz*mu_p_in_platform_z;
     const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
         v->R_yz*mu_p_in_platform_z;
     const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
         v->R_zz*mu_p_in_platform_z;
-    s[9*w + k] = f_p_x;
-    s[10*w + k] = f_p_y;
-    s[11*w + k] = f_p_z;
-    s[12*w + k] = mu_p_x;
-    s[13*w + k] = mu_p_y;
-    s[14*w + k] = mu_p_z;
+    s[18*w + k] = f_p_x;
+    s[19*w + k] = f_p_y;
+    s[20*w + k] = f_p_z;
+    s[21*w + k] = mu_p_x;
+    s[22*w + k] = mu_p_y;
+    s[23*w + k] = mu_p_z;
 }
 
 INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -6702,69 +5129,21 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    stage_ups_A_X(w, j, A, &v);
-    stage_ups_V_X(w, j, V, &v);
-    stage_ups_A_V_X(w, j, V, &v);
+    stage_ups_V_X(m, w, i, j, V, &v);
+    stage_ups_A_V_X(w, j, s, A, &v);
     stage_ups_legs_required(m, i, &v);
-    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
-    const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
-    const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_phi_3_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2)
-        - v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
-        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_t - ups_phi_3_t_2) +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
-    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
-        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2) -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
-    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
-        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
-    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y -
-        v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*ups_c_in_axes2_z;
-    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y -
-        v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*ups_c_in_axes2_z;
-    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y -
-        v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*ups_c_in_axes2_z;
+    const real ups_c_x = v.axis_y_ups_axes2_x*v.ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_x*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*v.ups_c_in_axes2_z;
+    const real ups_c_y = v.axis_y_ups_axes2_y*v.ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_y*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*v.ups_c_in_axes2_z;
+    const real ups_c_z = v.axis_y_ups_axes2_z*v.ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_z*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*v.ups_c_in_axes2_z;
     /* (R_a) moment that actuators and external wrench must give */
     const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
     const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
     const real ups_R_a_t_3 = ups_c_x*v.ups_q_y - ups_c_y*v.ups_q_x;
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-    const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
-    const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
-    const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
@@ -6777,17 +5156,17 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     o[0*count + k] = v.axis_x_ups_axes2_x;
     o[1*count + k] = v.axis_x_ups_axes2_y;
     o[2*count + k] = v.axis_x_ups_axes2_z;
-    /* (ups-H_a_3) */
-    o[3*count + k] = ups_H_a_3_x;
-    o[4*count + k] = ups_H_a_3_y;
-    o[5*count + k] = ups_H_a_3_z;
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.ups_H_a_3_x;
+    o[4*count + k] = v.ups_H_a_3_y;
+    o[5*count + k] = v.ups_H_a_3_z;
     o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void required_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -6805,23 +5184,13 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
     stage_tube_A_X(w, j, A, &v);
-    stage_tube_V_X(w, j, V, &v);
-    stage_tube_A_V_X(w, j, V, &v);
-    stage_tube_dynamics_required(&v);
+    stage_tube_V_X(m, w, i, j, V, &v);
+    stage_tube_A_V_X(w, j, s, A, &v);
     stage_tube_legs_required(m, i, &v);
     /* (R_a) */
-    const real tube_R_a_t = v.axis_x_tube_axes2_x*v.tube_G_m_in_axes2_x +
-        v.axis_y_tube_axes2_x*v.tube_G_m_in_axes2_y +
-        v.axis_z_tube_axes2_x*v.tube_G_m_in_axes2_z + v.tube_c_y*v.tube_q_z -
-        v.tube_c_z*v.tube_q_y;
-    const real tube_R_a_t_2 = v.axis_x_tube_axes2_y*v.tube_G_m_in_axes2_x +
-        v.axis_y_tube_axes2_y*v.tube_G_m_in_axes2_y +
-        v.axis_z_tube_axes2_y*v.tube_G_m_in_axes2_z + v.tube_c_z*v.tube_q_x -
-        v.tube_c_x*v.tube_q_z;
-    const real tube_R_a_t_3 = v.axis_x_tube_axes2_z*v.tube_G_m_in_axes2_x +
-        v.axis_y_tube_axes2_z*v.tube_G_m_in_axes2_y +
-        v.axis_z_tube_axes2_z*v.tube_G_m_in_axes2_z + v.tube_c_x*v.tube_q_y -
-        v.tube_c_y*v.tube_q_x;
+    const real tube_R_a_t = v.tube_c_y*v.tube_q_z - v.tube_c_z*v.tube_q_y - v.tube_c_m_x;
+    const real tube_R_a_t_2 = v.tube_c_z*v.tube_q_x - v.tube_c_x*v.tube_q_z - v.tube_c_m_y;
+    const real tube_R_a_t_3 = v.tube_c_x*v.tube_q_y - v.tube_c_y*v.tube_q_x - v.tube_c_m_z;
     /* (R_t) */
     gather(&terms[0*count + k], add, v.tube_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, v.tube_c_y);  /* R_t_y_of_legs */
@@ -6859,7 +5228,7 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void required_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *Hk, verdict *t)
+    *Hk, status_flags *t)
 {
     Hk[0*w + k] = o[0*count + at];
     Hk[NC*w + k] = o[1*count + at];
@@ -6883,23 +5252,23 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 {
     /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
-    const real f_p_x = s[9*w + k];
+    const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
-    const real f_p_y = s[10*w + k];
+    const real f_p_y = s[19*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
     const real R_t_z_of_legs = sums[2*w + k];
-    const real f_p_z = s[11*w + k];
+    const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
-    const real mu_p_x = s[12*w + k];
+    const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
-    const real mu_p_y = s[13*w + k];
+    const real mu_p_y = s[22*w + k];
     const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
-    const real mu_p_z = s[14*w + k];
+    const real mu_p_z = s[23*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
@@ -6912,14 +5281,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, real *Hk, verdict *t)
+    *required, real *H, real *Hk, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[6*LEGS(LEGS_OF_tube)] = {0}, o_tube[16*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
     values v;
-    required_before(m, 1, 0, X, &v, s, t);
+    required_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         required_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, A, terms_ups, o_ups);
     }
@@ -6946,7 +5315,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
 
 /* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, verdict *t)
+    *v, real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -6965,12 +5334,11 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
     size_t count, const real *s, const real *X, real *o)
 {
     values_ups v;
-    stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    stage_ups_X(m, w, i, j, s, X, &v);
     /* (ups-q_1) displacement of joint 1 */
-    const real ups_q_1 = angle(v.inv_ups_root_1*v.ups_S_in_turn1_y,
-        v.inv_ups_root_1*v.ups_S_in_turn1_x);
+    const real ups_q_1 = angle(v.ups_s_1, v.ups_c_1);
     /* (ups-q_2) displacement of joint 2 */
-    const real ups_q_2 = angle(-v.inv_ups_q_3*v.ups_S_in_turn1_z, v.inv_ups_q_3*v.ups_root_1);
+    const real ups_q_2 = angle(-v.ups_e_1_in_axes2_x, v.ups_c_2);
     /* (ups-q_1) */
     o[0*count + k] = ups_q_1;
     /* (ups-q_2) */
@@ -6983,7 +5351,7 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
 }
 
 INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[3*i*w + k] = o[0*count + at];
     q[(1 + 3*i)*w + k] = o[1*count + at];
@@ -6995,58 +5363,25 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at
 INLINE void inverse_kinematics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, real *o)
 {
-    /* (tube-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real tube_S_x = t_x - m->tube_base_point_x[i] + R_xy*m->tube_platform_point_y[i] +
-        R_xz*m->tube_platform_point_z[i] + R_xx*m->tube_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real tube_S_y = t_y - m->tube_base_point_y[i] + R_yx*m->tube_platform_point_x[i] +
-        R_yz*m->tube_platform_point_z[i] + R_yy*m->tube_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real tube_S_z = t_z - m->tube_base_point_z[i] + R_zx*m->tube_platform_point_x[i] +
-        R_zy*m->tube_platform_point_y[i] + R_zz*m->tube_platform_point_z[i];
-    const real tube_S_in_turn1_x = tube_S_x*m->tube_base_frame_xx[i] +
-        tube_S_y*m->tube_base_frame_yx[i] + tube_S_z*m->tube_base_frame_zx[i];
-    const real tube_S_in_turn1_y = tube_S_x*m->tube_base_frame_xy[i] +
-        tube_S_y*m->tube_base_frame_yy[i] + tube_S_z*m->tube_base_frame_zy[i];
-    const real tube_S_in_turn1_z = tube_S_x*m->tube_base_frame_xz[i] +
-        tube_S_y*m->tube_base_frame_yz[i] + tube_S_z*m->tube_base_frame_zz[i];
-    /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
-        tube_S_in_turn1_y*tube_S_in_turn1_y;
-    const real tube_root_1 = m->tube_branch_1[i]*root(tube_root_1_t);
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
     /* (tube-q_1) displacement of joint 1 */
-    const real inv_tube_root_1 = 1/tube_root_1;
-    const real tube_q_1 = angle(inv_tube_root_1*tube_S_in_turn1_y,
-        inv_tube_root_1*tube_S_in_turn1_x);
-    /* (tube-q_3) displacement of joint 3 */
-    const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
-    const real tube_q_3 = m->tube_branch_2[i]*root(tube_q_3_t);
+    const real tube_q_1 = angle(v.tube_s_1, v.tube_c_1);
     /* (tube-q_2) displacement of joint 2 */
-    const real inv_tube_q_3 = 1/tube_q_3;
-    const real tube_q_2 = angle(-inv_tube_q_3*tube_S_in_turn1_z, inv_tube_q_3*tube_root_1);
+    const real tube_q_2 = angle(-v.tube_e_1_in_axes2_x, v.tube_c_2);
     /* (tube-q_1) */
     o[0*count + k] = tube_q_1;
     /* (tube-q_2) */
     o[1*count + k] = tube_q_2;
-    /* (tube-q_3) */
-    o[2*count + k] = tube_q_3;
-    o[4*count + k] = tube_q_1 + (tube_q_2 + tube_q_3);
-    o[3*count + k] = UNLESS(magnitude(tube_root_1_t) > LEAST_3) + UNLESS(magnitude(tube_q_3_t)
-        > LEAST_3);
+    /* (tube-q_3) displacement of joint 3 */
+    o[2*count + k] = v.tube_q_3;
+    o[4*count + k] = tube_q_1 + (tube_q_2 + v.tube_q_3);
+    o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3);
 }
 
 INLINE void inverse_kinematics_place_tube(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *q, verdict *t)
+    *o, real *q, status_flags *t)
 {
     q[12*w + k] = o[0*count + at];
     q[13*w + k] = o[1*count + at];
@@ -7055,9 +5390,9 @@ INLINE void inverse_kinematics_place_tube(size_t w, size_t k, size_t at, size_t 
     t->total[k] += o[4*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
     values v;
@@ -7077,9 +5412,9 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_ups[5*LANES];
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -7106,7 +5441,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 
 /* ---- joint_rates ---- */
 INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, verdict *t)
+    real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -7126,43 +5461,21 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    /* (ups-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real ups_S_dot_x = t_dot_x + omega_y*v.ups_q_z - omega_z*v.ups_q_y;
-    const real omega_x = V[3*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real ups_S_dot_y = t_dot_y + omega_z*v.ups_q_x - omega_x*v.ups_q_z;
-    const real t_dot_z = V[2*w + j];
-    const real ups_S_dot_z = t_dot_z + omega_x*v.ups_q_y - omega_y*v.ups_q_x;
-    const real ups_S_dot_in_axes2_x = v.axis_x_ups_axes2_x*ups_S_dot_x +
-        v.axis_x_ups_axes2_y*ups_S_dot_y + v.axis_x_ups_axes2_z*ups_S_dot_z;
+    stage_ups_V_X(m, w, i, j, V, &v);
     /* (ups-qd_1) rate of joint 1 */
-    const real ups_qd_1 = v.inv_ups_root_1*(v.axis_z_ups_axes2_x*ups_S_dot_x +
-        v.axis_z_ups_axes2_y*ups_S_dot_y + v.axis_z_ups_axes2_z*ups_S_dot_z);
+    o[0*count + k] = v.ups_qd_1;
     /* (ups-qd_2) rate of joint 2 */
-    const real ups_qd_2 =
-        v.inv_ups_q_3*(ups_S_dot_x*(v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_y -
-        v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_z) +
-        ups_S_dot_y*(v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_z -
-        v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_x) +
-        ups_S_dot_z*(v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_x -
-        v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_y));
-    /* (ups-qd_1) */
-    o[0*count + k] = ups_qd_1;
-    /* (ups-qd_2) */
-    o[1*count + k] = ups_qd_2;
+    o[1*count + k] = v.ups_qd_2;
     /* (ups-qd_3) rate of joint 3 */
-    o[2*count + k] = ups_S_dot_in_axes2_x;
-    o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
+    o[2*count + k] = v.ups_S_dot_in_axes2_x;
+    o[4*count + k] = v.ups_qd_1 + (v.ups_qd_2 + v.ups_S_dot_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[3*i*w + k] = o[0*count + at];
     qd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -7176,209 +5489,24 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t i, size_t 
 {
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
-    stage_tube_V_X(w, j, V, &v);
-    /* (tube-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real tube_S_dot_x = t_dot_x + omega_y*v.tube_q_z - omega_z*v.tube_q_y;
-    const real omega_x = V[3*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real tube_S_dot_y = t_dot_y + omega_z*v.tube_q_x - omega_x*v.tube_q_z;
-    const real t_dot_z = V[2*w + j];
-    const real tube_S_dot_z = t_dot_z + omega_x*v.tube_q_y - omega_y*v.tube_q_x;
-    const real tube_S_dot_in_axes2_x = v.axis_x_tube_axes2_x*tube_S_dot_x +
-        v.axis_x_tube_axes2_y*tube_S_dot_y + v.axis_x_tube_axes2_z*tube_S_dot_z;
-    const real tube_S_dot_in_axes2_y = v.axis_y_tube_axes2_x*tube_S_dot_x +
-        v.axis_y_tube_axes2_y*tube_S_dot_y + v.axis_y_tube_axes2_z*tube_S_dot_z;
-    const real tube_S_dot_in_axes2_z = v.axis_z_tube_axes2_x*tube_S_dot_x +
-        v.axis_z_tube_axes2_y*tube_S_dot_y + v.axis_z_tube_axes2_z*tube_S_dot_z;
-    /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
-        v.tube_n_m1_t_11*v.tube_s_1) -
-        v.tube_c_2*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_yx[i] +
-        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_yy[i] +
-        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_yz[i]);
-    /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-    const real tube_n_m2_t = v.tube_n_m1_t_7*m->tube_platform_joint_rotation_zx[i] +
-        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_zy[i] +
-        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_zz[i];
-    const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*m->tube_platform_joint_rotation_zx[i]
-        + v.tube_n_m1_t_2*m->tube_platform_joint_rotation_zy[i] +
-        v.tube_n_m1_t_3*m->tube_platform_joint_rotation_zz[i]) +
-        v.tube_s_1*(v.tube_n_m1_t_4*m->tube_platform_joint_rotation_zx[i] +
-        v.tube_n_m1_t_5*m->tube_platform_joint_rotation_zy[i] +
-        v.tube_n_m1_t_6*m->tube_platform_joint_rotation_zz[i]);
-    const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
-        v.tube_e_1_in_axes2_x*tube_n_m2_t;
-    const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
-        v.tube_c_2*tube_n_m2_t;
-    const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
-        v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
-    /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-    const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
-        v.tube_n_m3_t_2*v.tube_s_1) +
-        v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_xx[i] +
-        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_xy[i] +
-        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_xz[i]);
-    const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
-    /* (tube-f_c1) force part of constraint wrench 1 */
-    const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-        tube_n_m1_in_axes2_z*tube_n_m3_t_3;
-    /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-    const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-    const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
-    /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-    const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
-    /* (tube-size_c3) size of the moment */
-    const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
-    /* (tube-mu2_c3) moment along direction 2 that goes with it */
-    const real tube_mu2_c3 = 1/tube_size_c3;
-    /* (tube-w_1) force part of reciprocal wrench 1 */
-    const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_3;
-    const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
-    const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
-    const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-    const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
-    const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
-    const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
-    const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
-    const real tube_w_1_t_10 = R(1.35)*tube_m1_c3*tube_mu2_c3;
-    const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
-    const real tube_w_1_t_12 = R(1.35)*tube_m3_c3_t*tube_mu2_c3;
-    const real tube_w_1_t_13 = root(v.tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
-        tube_w_1_t_5*tube_w_1_t_5);
-    const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-    const real tube_w_1_t_14 = inv_tube_w_1_t_13*v.tube_q_3;
-    const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
-    const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
-    const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
-        tube_w_1_t_14;
-    const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
-    const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-    const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-    const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
-    const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
-    const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-    const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
-    const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
-    const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
-    const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
-    const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-    const real tube_w_1_t_29 = v.tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
-    const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-    const real tube_w_1_t_31 = v.tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
-    const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
-    const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-        + tube_w_1_t_20*tube_w_1_t_20);
-    const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-    const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-    const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-    const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-    const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-        tube_w_1_t_24*tube_w_1_t_36;
-    const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-    const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-    const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-    const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-        tube_w_1_t_27*tube_w_1_t_35;
-    const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-    const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-    const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-    const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
-        tube_w_1_t_31*tube_w_1_t_35;
-    const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-    const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-    const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-    const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-        tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-    const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-    const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-    const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-    const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-    const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-        tube_w_1_t_43*tube_w_1_t_51;
-    const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-    const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-    const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-    const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 - inv_tube_w_1_t_49*v.tube_root_1 +
-        tube_w_1_t_48*tube_w_1_t_52 - tube_w_1_t_47*tube_w_1_t_51;
-    const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-    const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-    const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-    const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-    const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-        + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-        tube_w_1_t_57*tube_w_1_t_57);
-    const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-    const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-    const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-    const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-    const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-    const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-    const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-        tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-        tube_w_1_t_2*tube_w_1_t_67;
-    const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-    const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-    const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-    const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-    const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-    const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-        + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-        tube_w_1_t_74*tube_w_1_t_74);
-    /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-    const real tube_eta_1 = tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_z -
-        v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_y;
-    /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-    const real tube_eta_2 = tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_y -
-        tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_x;
-    /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-    const real tube_eta_3 = tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_z -
-        v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_x;
+    stage_tube_V_X(m, w, i, j, V, &v);
     /* (tube-qd_1) rate of joint 1 */
-    const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
-    const real tube_qd_1_t = R(1.35)*tube_eta_1;
-    const real tube_qd_1_t_2 = R(1.35)*tube_eta_2;
-    const real tube_qd_1_t_3 = R(1.35)*tube_eta_3;
-    const real tube_qd_1 =
-        inv_tube_w_1_t_75*(inv_tube_w_1_t_75*tube_S_dot_in_axes2_y*tube_w_1_t_70 +
-        inv_tube_w_1_t_75*tube_S_dot_in_axes2_z*tube_w_1_t_71 +
-        inv_tube_w_1_t_75*tube_qd_1_t*tube_w_1_t_72 +
-        inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74 -
-        inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73);
+    o[0*count + k] = v.tube_qd_1;
     /* (tube-qd_2) rate of joint 2 */
-    const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-        tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-        tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69);
-    const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-        tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1_t*tube_w_1_t_51 +
-        tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_1*tube_w_1_t_58 + tube_qd_2_t*tube_w_1_t_53);
-    const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15
-        + tube_qd_1_t_3*tube_w_1_t_16 - tube_qd_1*tube_w_1_t_29 - tube_qd_2_t*tube_w_1_t_25 +
-        tube_qd_2_t_2*tube_w_1_t_21 +
-        inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-        tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 + tube_qd_1*tube_w_1_t_45 +
-        tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37);
-    const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
-    /* (tube-qd_1) */
-    o[0*count + k] = tube_qd_1;
-    /* (tube-qd_2) */
-    o[1*count + k] = tube_qd_2;
+    o[1*count + k] = v.tube_qd_2;
     /* (tube-qd_3) rate of joint 3 */
-    o[2*count + k] = tube_S_dot_in_axes2_x;
-    o[4*count + k] = tube_qd_1 + (tube_qd_2 + tube_S_dot_in_axes2_x);
+    o[2*count + k] = v.tube_S_dot_in_axes2_x;
+    o[4*count + k] = v.tube_qd_1 + (v.tube_qd_2 + v.tube_S_dot_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
-        UNLESS(magnitude(tube_size_c3) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5)
-        + UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
-        LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
-        UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
 }
 
 INLINE void joint_rates_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o,
-    real *qd, verdict *t)
+    real *qd, status_flags *t)
 {
     qd[12*w + k] = o[0*count + at];
     qd[13*w + k] = o[1*count + at];
@@ -7387,9 +5515,10 @@ INLINE void joint_rates_place_tube(size_t w, size_t k, size_t at, size_t count, 
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
     values v;
@@ -7409,9 +5538,9 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_ups[5*LANES];
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -7437,10 +5566,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
+    real *V, const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -7450,6 +5581,15 @@ INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, co
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -7458,42 +5598,24 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    stage_ups_A_X(w, j, A, &v);
-    stage_ups_V_X(w, j, V, &v);
-    stage_ups_A_V_X(w, j, V, &v);
-    /* (ups-omega_1) angular velocity of link 1 */
-    const real ups_omega_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z*v.ups_qd_1;
-    const real ups_omega_1_in_axes2_y = -v.inv_ups_q_3*v.ups_qd_1*v.ups_root_1;
-    /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-    const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*v.ups_q_3*v.ups_qd_2 -
-        v.ups_bias_t*ups_omega_1_in_axes2_y;
+    stage_ups_V_X(m, w, i, j, V, &v);
+    stage_ups_A_V_X(w, j, s, A, &v);
     /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-    const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*v.ups_S_ddot_x +
-        v.axis_x_ups_axes2_y*v.ups_S_ddot_y + v.axis_x_ups_axes2_z*v.ups_S_ddot_z -
-        v.ups_q_3*(-v.ups_qd_2*v.ups_qd_2 - ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y);
-    const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*v.ups_S_ddot_x +
-        v.axis_z_ups_axes2_y*v.ups_S_ddot_y + v.axis_z_ups_axes2_z*v.ups_S_ddot_z -
-        ups_bias_in_axes2_z;
+    const real ups_rel_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_W_2_in_axes2_xx*v.ups_q_3;
     /* (ups-qdd_1) acceleration of joint 1 */
-    const real ups_qdd_1 = v.inv_ups_root_1*ups_rel_in_axes2_z;
+    o[0*count + k] = v.ups_qdd_1;
     /* (ups-qdd_2) acceleration of joint 2 */
-    const real ups_qdd_2 = v.inv_ups_q_3*(v.axis_y_ups_axes2_x*v.ups_S_ddot_x +
-        v.axis_y_ups_axes2_y*v.ups_S_ddot_y + v.axis_y_ups_axes2_z*v.ups_S_ddot_z -
-        v.ups_bias_t*v.ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-    /* (ups-qdd_1) */
-    o[0*count + k] = ups_qdd_1;
-    /* (ups-qdd_2) */
-    o[1*count + k] = ups_qdd_2;
+    o[1*count + k] = v.ups_qdd_2;
     /* (ups-qdd_3) acceleration of joint 3 */
     o[2*count + k] = ups_rel_in_axes2_x;
-    o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
+    o[4*count + k] = v.ups_qdd_1 + (v.ups_qdd_2 + ups_rel_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[3*i*w + k] = o[0*count + at];
     qdd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -7508,65 +5630,17 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t i,
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
     stage_tube_A_X(w, j, A, &v);
-    stage_tube_V_X(w, j, V, &v);
-    stage_tube_A_V_X(w, j, V, &v);
-    stage_tube_Z_joint_accelerations(&v);
-    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-    const real tube_bias_t = 2*v.tube_S_dot_in_axes2_x;
-    const real tube_bias_in_axes2_y =
-        v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_y*v.tube_q_3 +
-        tube_bias_t*v.tube_qd_2;
-    const real tube_bias_in_axes2_z = 2*v.tube_W_2_in_axes2_xz*v.tube_q_3 -
-        tube_bias_t*v.tube_omega_1_in_axes2_y;
+    stage_tube_V_X(m, w, i, j, V, &v);
+    stage_tube_A_V_X(w, j, s, A, &v);
     /* (tube-rel) acceleration of the connection point left to the joint accelerations */
-    const real tube_rel_in_axes2_x = v.axis_x_tube_axes2_x*v.tube_S_ddot_x +
-        v.axis_x_tube_axes2_y*v.tube_S_ddot_y + v.axis_x_tube_axes2_z*v.tube_S_ddot_z +
-        v.tube_q_3*(v.tube_omega_1_in_axes2_y*v.tube_omega_1_in_axes2_y +
-        v.tube_qd_2*v.tube_qd_2);
-    const real tube_rel_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_S_ddot_x +
-        v.axis_y_tube_axes2_y*v.tube_S_ddot_y + v.axis_y_tube_axes2_z*v.tube_S_ddot_z -
-        tube_bias_in_axes2_y;
-    const real tube_rel_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_S_ddot_x +
-        v.axis_z_tube_axes2_y*v.tube_S_ddot_y + v.axis_z_tube_axes2_z*v.tube_S_ddot_z -
-        tube_bias_in_axes2_z;
-    /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real tube_etad_1 = v.tube_nu_1 - v.tube_etad_1_t;
-    /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
-    const real tube_etad_2 = v.tube_nu_2 - v.tube_etad_2_t;
-    /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
-    const real tube_etad_3 = v.tube_nu_3 - v.tube_etad_3_t;
+    const real tube_rel_in_axes2_x = v.tube_S_ddot_in_axes2_x + v.tube_W_2_t_3*v.tube_q_3;
     /* (tube-qdd_1) acceleration of joint 1 */
-    const real tube_qdd_1_t = R(1.35)*tube_etad_1;
-    const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
-    const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
-    const real tube_qdd_1 = v.inv_tube_w_1_t_75*(v.tube_qd_1_t*tube_rel_in_axes2_y +
-        v.tube_qd_1_t_2*tube_rel_in_axes2_z - v.tube_qd_1_t_4*tube_qdd_1_t_2 +
-        v.tube_qd_1_t_3*tube_qdd_1_t + v.tube_qd_1_t_5*tube_qdd_1_t_3);
+    o[0*count + k] = v.tube_qdd_1;
     /* (tube-qdd_2) acceleration of joint 2 */
-    const real tube_qdd_2_t = v.inv_tube_w_1_t_63*(tube_rel_in_axes2_y*v.tube_w_1_t_64 +
-        tube_rel_in_axes2_z*v.tube_w_1_t_65 + tube_qdd_1_t_2*v.tube_w_1_t_67 +
-        tube_qdd_1_t*v.tube_w_1_t_66 + tube_qdd_1_t_3*v.tube_w_1_t_68 -
-        tube_qdd_1*v.tube_w_1_t_69);
-    const real tube_qdd_2_t_2 = v.inv_tube_w_1_t_49*(tube_rel_in_axes2_y*v.tube_w_1_t_50 +
-        v.inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1_t*v.tube_w_1_t_51 +
-        tube_qdd_1_t_3*v.tube_w_1_t_52 + tube_qdd_1*v.tube_w_1_t_58 +
-        tube_qdd_2_t*v.tube_w_1_t_53);
-    const real tube_qdd_2_t_3 = tube_rel_in_axes2_y*v.tube_w_1_t_14 +
-        tube_qdd_1_t*v.tube_w_1_t_15 + tube_qdd_1_t_3*v.tube_w_1_t_16 -
-        tube_qdd_1*v.tube_w_1_t_29 - tube_qdd_2_t*v.tube_w_1_t_25 +
-        tube_qdd_2_t_2*v.tube_w_1_t_21 +
-        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_rel_in_axes2_y*v.tube_w_1_t_34 +
-        tube_qdd_1_t*v.tube_w_1_t_35 + tube_qdd_1_t_3*v.tube_w_1_t_36 +
-        tube_qdd_1*v.tube_w_1_t_45 + tube_qdd_2_t*v.tube_w_1_t_41 -
-        tube_qdd_2_t_2*v.tube_w_1_t_37);
-    const real tube_qdd_2 = v.inv_tube_w_1_t_13*tube_qdd_2_t_3;
-    /* (tube-qdd_1) */
-    o[0*count + k] = tube_qdd_1;
-    /* (tube-qdd_2) */
-    o[1*count + k] = tube_qdd_2;
+    o[1*count + k] = v.tube_qdd_2;
     /* (tube-qdd_3) acceleration of joint 3 */
     o[2*count + k] = tube_rel_in_axes2_x;
-    o[4*count + k] = tube_qdd_1 + (tube_qdd_2 + tube_rel_in_axes2_x);
+    o[4*count + k] = v.tube_qdd_1 + (v.tube_qdd_2 + tube_rel_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
         + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
@@ -7576,7 +5650,7 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t i,
 }
 
 INLINE void joint_accelerations_place_tube(size_t w, size_t k, size_t at, size_t count, const real
-    *o, real *qdd, verdict *t)
+    *o, real *qdd, status_flags *t)
 {
     qdd[12*w + k] = o[0*count + at];
     qdd[13*w + k] = o[1*count + at];
@@ -7586,13 +5660,13 @@ INLINE void joint_accelerations_place_tube(size_t w, size_t k, size_t at, size_t
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s, t);
+    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
@@ -7608,14 +5682,14 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_ups[5*LANES];
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s, t);
+        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -7637,7 +5711,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 
 /* ---- constraints ---- */
 INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, verdict *t)
+    real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -7657,91 +5731,15 @@ INLINE void constraints_legs_tube(const prepared *m, size_t w, size_t i, size_t 
 {
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
-    /* (tube-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real tube_S_x = t_x - m->tube_base_point_x[i] + R_xy*m->tube_platform_point_y[i] +
-        R_xz*m->tube_platform_point_z[i] + R_xx*m->tube_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real tube_S_y = t_y - m->tube_base_point_y[i] + R_yx*m->tube_platform_point_x[i] +
-        R_yz*m->tube_platform_point_z[i] + R_yy*m->tube_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real tube_S_z = t_z - m->tube_base_point_z[i] + R_zx*m->tube_platform_point_x[i] +
-        R_zy*m->tube_platform_point_y[i] + R_zz*m->tube_platform_point_z[i];
-    const real tube_S_in_turn1_x = tube_S_x*m->tube_base_frame_xx[i] +
-        tube_S_y*m->tube_base_frame_yx[i] + tube_S_z*m->tube_base_frame_zx[i];
-    const real tube_S_in_turn1_y = tube_S_x*m->tube_base_frame_xy[i] +
-        tube_S_y*m->tube_base_frame_yy[i] + tube_S_z*m->tube_base_frame_zy[i];
-    const real tube_S_in_turn1_z = tube_S_x*m->tube_base_frame_xz[i] +
-        tube_S_y*m->tube_base_frame_yz[i] + tube_S_z*m->tube_base_frame_zz[i];
-    /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
-        tube_S_in_turn1_y*tube_S_in_turn1_y;
-    const real tube_root_1 = m->tube_branch_1[i]*root(tube_root_1_t);
-    /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_tube_root_1 = 1/tube_root_1;
-    const real tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x;
-    /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-    const real tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y;
-    /* (tube-q_3) displacement of joint 3 */
-    const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
-    const real tube_q_3 = m->tube_branch_2[i]*root(tube_q_3_t);
-    /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_tube_q_3 = 1/tube_q_3;
-    const real tube_c_2 = inv_tube_q_3*tube_root_1;
-    /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z;
-    const real tube_n_m1_t_13 = tube_c_1*v.tube_n_m1_t_10 + v.tube_n_m1_t_11*tube_s_1;
-    const real tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 -
-        tube_c_2*v.tube_n_m1_t_12;
-    const real tube_n_m1_in_axes1_z = tube_c_2*(tube_c_1*v.tube_n_m1_t_11 -
-        v.tube_n_m1_t_10*tube_s_1);
-    /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-    const real tube_n_m2_t_4 = tube_c_1*v.tube_n_m2_t + v.tube_n_m2_t_2*tube_s_1;
-    const real tube_n_m2_t_5 = tube_c_2*(tube_c_2*tube_n_m2_t_4 +
-        tube_e_1_in_axes2_x*v.tube_n_m2_t_3) +
-        tube_e_1_in_axes2_x*(tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*v.tube_n_m2_t_3);
-    /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-    const real tube_n_m3_t_4 = tube_c_1*v.tube_n_m3_t + v.tube_n_m3_t_2*tube_s_1;
-    const real tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 +
-        tube_e_1_in_axes2_x*v.tube_n_m3_t_3;
-    const real tube_n_m3_t_5 = tube_e_1_in_axes2_x*(tube_c_1*v.tube_n_m3_t_2 -
-        v.tube_n_m3_t*tube_s_1);
-    /* (tube-f_c1) force part of constraint wrench 1 */
-    const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-        tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-    /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-    const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-    const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z;
-    /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-    const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5;
-    /* (tube-size_c3) size of the moment */
-    const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
-    /* (tube-mu2_c3) moment along direction 2 that goes with it */
-    const real tube_mu2_c3 = 1/tube_size_c3;
     /* (tube-phi_c1) loop-closure residual along the constraint force */
-    const real tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 +
-        tube_e_1_in_axes2_x*v.tube_n_m1_t_12;
-    const real tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 -
-        tube_c_2*v.tube_n_m3_t_3;
-    const real tube_phi_c1 = inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_t_5*tube_q_3 -
-        inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes1_z*tube_q_3;
+    const real tube_phi_c1 = v.tube_end_p1_in_axes2_x*v.tube_m1_c1_t -
+        v.tube_end_p3_in_axes2_y*v.tube_m3_c1_t;
     /* (tube-phi_c2) loop-closure residual along the constraint force */
-    const real tube_phi_c2 =
-        inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_in_axes2_z*tube_root_1 +
-        inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes2_z*tube_root_1;
+    const real tube_phi_c2 = v.tube_end_p1_in_axes2_x*v.tube_m1_c2_t +
+        v.tube_end_p3_in_axes2_y*v.tube_m3_c2;
     /* (tube-phi_c3) loop-closure residual about the constraint moment */
-    const real tube_phi_c3 = -tube_mu2_c3*(tube_c_1*v.tube_n_m2_t_2 - v.tube_n_m2_t*tube_s_1)
-        - tube_end_p1_in_axes2_x*tube_m1_c3*tube_mu2_c3 -
-        tube_end_p3_in_axes2_y*tube_m3_c3_t*tube_mu2_c3;
+    const real tube_phi_c3 = -v.inv_tube_size_c3*v.tube_end_p2_in_axes2_z -
+        v.tube_end_p1_in_axes2_x*v.tube_mu1_c3 - v.tube_end_p3_in_axes2_y*v.tube_mu3_c3_t;
     /* (tube-phi_c1) */
     o[0*count + k] = tube_phi_c1;
     /* (tube-phi_c2) */
@@ -7749,13 +5747,13 @@ INLINE void constraints_legs_tube(const prepared *m, size_t w, size_t i, size_t 
     /* (tube-phi_c3) */
     o[2*count + k] = tube_phi_c3;
     o[4*count + k] = tube_phi_c1 + (tube_phi_c2 + tube_phi_c3);
-    o[3*count + k] = UNLESS(magnitude(tube_root_1_t) > LEAST_3) + UNLESS(magnitude(tube_q_3_t)
-        > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
-        > LEAST_4);
+    o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4);
 }
 
 INLINE void constraints_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o,
-    real *constraints, verdict *t)
+    real *constraints, status_flags *t)
 {
     constraints[0*w + k] = o[0*count + at];
     constraints[1*w + k] = o[1*count + at];
@@ -7764,9 +5762,9 @@ INLINE void constraints_place_tube(size_t w, size_t k, size_t at, size_t count, 
     t->total[k] += o[4*count + at];
 }
 
-APART void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
+APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
     values v;
     constraints_before(m, 1, 0, X, &v, s, t);
@@ -7779,9 +5777,9 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 }
 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -7798,10 +5796,12 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
+    real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -7811,6 +5811,15 @@ INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, va
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -7819,59 +5828,20 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    stage_ups_A_X(w, j, A, &v);
-    stage_ups_V_X(w, j, V, &v);
-    stage_ups_A_V_X(w, j, V, &v);
+    stage_ups_V_X(m, w, i, j, V, &v);
+    stage_ups_A_V_X(w, j, s, A, &v);
     stage_ups_legs_required(m, i, &v);
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
-    const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        m->ups_J_group_2_in_axes2_yz[i]*(ups_mu_2_t_2 - ups_mu_2_t_3) +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
-    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
-        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
-    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-       point */
-    const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3) -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
-    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
-        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
+    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real ups_acc_3_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_g_in_axes2_x;
+    const real ups_acc_3_in_axes2_y = v.ups_S_ddot_in_axes2_y - v.ups_g_in_axes2_y;
+    const real ups_acc_3_in_axes2_z = v.ups_S_ddot_in_axes2_z - v.ups_g_in_axes2_z;
     /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
-    const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] - m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2
-        - ups_mu_2_t_3) - v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
-    const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
-        v.ups_acc_3_in_axes2_y*m->ups_link3_mass[i];
-    const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
-        v.ups_acc_3_in_axes2_z*m->ups_link3_mass[i];
+    const real ups_c_true_in_axes2_x = -ups_acc_3_in_axes2_x*m->ups_link3_mass[i] -
+        v.ups_phi_3_in_axes2_x;
+    const real ups_c_true_in_axes2_y = v.ups_c_in_axes2_y -
+        ups_acc_3_in_axes2_y*m->ups_link3_mass[i];
+    const real ups_c_true_in_axes2_z = v.ups_c_in_axes2_z -
+        ups_acc_3_in_axes2_z*m->ups_link3_mass[i];
     const real ups_c_true_x = v.axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
         v.axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
         v.axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
@@ -7895,7 +5865,7 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[6*i*w + k] = o[0*count + at];
     leg_force[(6*i + 1)*w + k] = o[1*count + at];
@@ -7912,61 +5882,34 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
     stage_tube_A_X(w, j, A, &v);
-    stage_tube_V_X(w, j, V, &v);
-    stage_tube_A_V_X(w, j, V, &v);
+    stage_tube_V_X(m, w, i, j, V, &v);
+    stage_tube_A_V_X(w, j, s, A, &v);
     stage_tube_legs_required(m, i, &v);
-    /* (tube-mu_c1) the moment that goes with it */
-    const real tube_mu_c1_x = v.axis_x_tube_axes2_x*v.tube_mu_c1_in_axes2_x +
-        v.axis_y_tube_axes2_x*v.tube_mu_c1_in_axes2_y +
-        v.axis_z_tube_axes2_x*v.tube_mu_c1_in_axes2_z;
-    const real tube_mu_c1_y = v.axis_x_tube_axes2_y*v.tube_mu_c1_in_axes2_x +
-        v.axis_y_tube_axes2_y*v.tube_mu_c1_in_axes2_y +
-        v.axis_z_tube_axes2_y*v.tube_mu_c1_in_axes2_z;
-    const real tube_mu_c1_z = v.axis_x_tube_axes2_z*v.tube_mu_c1_in_axes2_x +
-        v.axis_y_tube_axes2_z*v.tube_mu_c1_in_axes2_y +
-        v.axis_z_tube_axes2_z*v.tube_mu_c1_in_axes2_z;
-    /* (tube-mu_c2) the moment that goes with it */
-    const real tube_mu_c2_x = v.axis_y_tube_axes2_x*v.tube_mu_c2_in_axes2_y +
-        v.axis_z_tube_axes2_x*v.tube_mu_c2_in_axes2_z - v.axis_x_tube_axes2_x*v.tube_mu_c2_t;
-    const real tube_mu_c2_y = v.axis_y_tube_axes2_y*v.tube_mu_c2_in_axes2_y +
-        v.axis_z_tube_axes2_y*v.tube_mu_c2_in_axes2_z - v.axis_x_tube_axes2_y*v.tube_mu_c2_t;
-    const real tube_mu_c2_z = v.axis_y_tube_axes2_z*v.tube_mu_c2_in_axes2_y +
-        v.axis_z_tube_axes2_z*v.tube_mu_c2_in_axes2_z - v.axis_x_tube_axes2_z*v.tube_mu_c2_t;
-    /* (tube-c_m) moment of the leg on the platform without actuation */
-    const real tube_c_m_x = -v.axis_x_tube_axes2_x*v.tube_G_m_in_axes2_x -
-        v.axis_y_tube_axes2_x*v.tube_G_m_in_axes2_y -
-        v.axis_z_tube_axes2_x*v.tube_G_m_in_axes2_z;
-    const real tube_c_m_y = -v.axis_x_tube_axes2_y*v.tube_G_m_in_axes2_x -
-        v.axis_y_tube_axes2_y*v.tube_G_m_in_axes2_y -
-        v.axis_z_tube_axes2_y*v.tube_G_m_in_axes2_z;
-    const real tube_c_m_z = -v.axis_x_tube_axes2_z*v.tube_G_m_in_axes2_x -
-        v.axis_y_tube_axes2_z*v.tube_G_m_in_axes2_y -
-        v.axis_z_tube_axes2_z*v.tube_G_m_in_axes2_z;
     /* (tube-c) leg force on the platform without actuation and without the mass at the connection
        point */
     o[0*count + k] = v.tube_c_x;
     o[1*count + k] = v.tube_c_y;
     o[2*count + k] = v.tube_c_z;
-    /* (tube-c_m) */
-    o[3*count + k] = tube_c_m_x;
-    o[4*count + k] = tube_c_m_y;
-    o[5*count + k] = tube_c_m_z;
+    /* (tube-c_m) moment of the leg on the platform without actuation */
+    o[3*count + k] = v.tube_c_m_x;
+    o[4*count + k] = v.tube_c_m_y;
+    o[5*count + k] = v.tube_c_m_z;
     /* (tube-n_c1) unit force of the constraint wrench */
     o[6*count + k] = v.axis_y_tube_axes2_x;
     o[7*count + k] = v.axis_y_tube_axes2_y;
     o[8*count + k] = v.axis_y_tube_axes2_z;
-    /* (tube-mu_c1) */
-    o[9*count + k] = tube_mu_c1_x;
-    o[10*count + k] = tube_mu_c1_y;
-    o[11*count + k] = tube_mu_c1_z;
+    /* (tube-mu_c1) the moment that goes with it */
+    o[9*count + k] = v.tube_mu_c1_x;
+    o[10*count + k] = v.tube_mu_c1_y;
+    o[11*count + k] = v.tube_mu_c1_z;
     /* (tube-n_c2) unit force of the constraint wrench */
     o[12*count + k] = v.axis_z_tube_axes2_x;
     o[13*count + k] = v.axis_z_tube_axes2_y;
     o[14*count + k] = v.axis_z_tube_axes2_z;
-    /* (tube-mu_c2) */
-    o[15*count + k] = tube_mu_c2_x;
-    o[16*count + k] = tube_mu_c2_y;
-    o[17*count + k] = tube_mu_c2_z;
+    /* (tube-mu_c2) the moment that goes with it */
+    o[15*count + k] = v.tube_mu_c2_x;
+    o[16*count + k] = v.tube_mu_c2_y;
+    o[17*count + k] = v.tube_mu_c2_z;
     /* (tube-mu_c3) the moment that goes with it */
     o[18*count + k] = v.tube_mu_c3_x;
     o[19*count + k] = v.tube_mu_c3_y;
@@ -7980,7 +5923,7 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size
 }
 
 INLINE void legs_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *leg_force, real *constraint_direction, verdict *t)
+    *leg_force, real *constraint_direction, status_flags *t)
 {
     leg_force[24*w + k] = o[0*count + at];
     leg_force[(24 + 1)*w + k] = o[1*count + at];
@@ -8007,16 +5950,16 @@ INLINE void legs_place_tube(size_t w, size_t k, size_t at, size_t count, const r
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, real *constraint_direction, verdict *t)
+    *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[22*LEGS(LEGS_OF_tube)] = {0};
     clear(leg_force, 6*NL);
     clear(actuator, 24);
     clear(constraint_direction, 6*NC);
     values v;
-    legs_before(m, 1, 0, X, &v, s, t);
+    legs_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         legs_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
@@ -8033,7 +5976,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 
 /* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -8055,48 +5998,35 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
-        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
-        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
-        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
-        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
-        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
-    s[9*w + k] = potential_t;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
+        m->gravity_y*(m->m_star*t_y + v->h_star_y) + m->gravity_z*(m->m_star*t_z +
+        v->h_star_z);
+    s[18*w + k] = potential_t;
 }
 
 INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
     values_ups v;
-    stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real ups_c_1 = v.inv_ups_root_1*v.ups_S_in_turn1_x;
-    /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-    const real ups_s_1 = v.inv_ups_root_1*v.ups_S_in_turn1_y;
-    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real ups_c_2 = v.inv_ups_q_3*v.ups_root_1;
+    stage_ups_X(m, w, i, j, s, X, &v);
     /* (potential) */
-    const real ups_e_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z;
-    const real ups_potential_t_4 = m->ups_acc_3_t[i]*ups_c_1 + m->ups_acc_3_t_2[i]*ups_s_1;
-    const real ups_potential_t_5 = ups_c_1*m->ups_potential_t[i] +
-        m->ups_potential_t_2[i]*ups_s_1;
-    const real ups_potential_t_6 = (ups_e_1_in_axes2_x*ups_potential_t_4 -
-        m->ups_acc_3_t_3[i]*ups_c_2)*(m->ups_h_2_in_spec2_z[i] + m->ups_h_3_in_spec2_z[i] -
-        m->ups_link2_mass[i]*(ups_e_1_in_axes2_x*ups_potential_t_5 -
-        ups_c_2*m->ups_potential_t_3[i])) - (m->ups_acc_3_t_2[i]*ups_c_1 -
-        m->ups_acc_3_t[i]*ups_s_1)*(m->ups_h_2_in_spec2_y[i] + m->ups_h_3_in_spec2_y[i] +
-        m->ups_link2_mass[i]*(ups_c_1*m->ups_potential_t_2[i] -
-        m->ups_potential_t[i]*ups_s_1)) - (m->ups_acc_3_t_3[i]*ups_e_1_in_axes2_x +
-        ups_c_2*ups_potential_t_4)*(m->ups_h_2_in_spec2_x[i] + m->ups_h_3_in_spec2_x[i] +
-        m->ups_link2_mass[i]*(ups_c_2*ups_potential_t_5 +
-        ups_e_1_in_axes2_x*m->ups_potential_t_3[i]));
+    const real ups_potential_t_4 = v.ups_c_1*m->ups_potential_t[i] +
+        m->ups_potential_t_2[i]*v.ups_s_1;
+    const real ups_potential_t_5 = v.ups_g_in_axes2_y*(m->ups_h_2_in_spec2_z[i] +
+        m->ups_h_3_in_spec2_z[i] -
+        m->ups_link2_mass[i]*(v.ups_e_1_in_axes2_x*ups_potential_t_4 -
+        v.ups_c_2*m->ups_potential_t_3[i])) - v.ups_g_in_axes2_z*(m->ups_h_2_in_spec2_y[i] +
+        m->ups_h_3_in_spec2_y[i] + m->ups_link2_mass[i]*(v.ups_c_1*m->ups_potential_t_2[i] -
+        m->ups_potential_t[i]*v.ups_s_1)) - v.ups_g_in_axes2_x*(m->ups_h_2_in_spec2_x[i] +
+        m->ups_h_3_in_spec2_x[i] + m->ups_link2_mass[i]*(v.ups_c_2*ups_potential_t_4 +
+        v.ups_e_1_in_axes2_x*m->ups_potential_t_3[i]));
     /* (potential) */
-    gather(&terms[0*count + k], add, ups_potential_t_6);  /* potential_of_legs */
+    gather(&terms[0*count + k], add, ups_potential_t_5);  /* potential_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
 }
 
-INLINE void potential_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -8104,75 +6034,33 @@ INLINE void potential_place_ups(size_t k, size_t at, size_t count, const real *o
 INLINE void potential_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    /* (tube-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real tube_S_x = t_x - m->tube_base_point_x[i] + R_xy*m->tube_platform_point_y[i] +
-        R_xz*m->tube_platform_point_z[i] + R_xx*m->tube_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real tube_S_y = t_y - m->tube_base_point_y[i] + R_yx*m->tube_platform_point_x[i] +
-        R_yz*m->tube_platform_point_z[i] + R_yy*m->tube_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real tube_S_z = t_z - m->tube_base_point_z[i] + R_zx*m->tube_platform_point_x[i] +
-        R_zy*m->tube_platform_point_y[i] + R_zz*m->tube_platform_point_z[i];
-    const real tube_S_in_turn1_x = tube_S_x*m->tube_base_frame_xx[i] +
-        tube_S_y*m->tube_base_frame_yx[i] + tube_S_z*m->tube_base_frame_zx[i];
-    const real tube_S_in_turn1_y = tube_S_x*m->tube_base_frame_xy[i] +
-        tube_S_y*m->tube_base_frame_yy[i] + tube_S_z*m->tube_base_frame_zy[i];
-    const real tube_S_in_turn1_z = tube_S_x*m->tube_base_frame_xz[i] +
-        tube_S_y*m->tube_base_frame_yz[i] + tube_S_z*m->tube_base_frame_zz[i];
-    /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
-        tube_S_in_turn1_y*tube_S_in_turn1_y;
-    const real tube_root_1 = m->tube_branch_1[i]*root(tube_root_1_t);
-    /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_tube_root_1 = 1/tube_root_1;
-    const real tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x;
-    /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-    const real tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y;
-    /* (tube-q_3) displacement of joint 3 */
-    const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
-    const real tube_q_3 = m->tube_branch_2[i]*root(tube_q_3_t);
-    /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_tube_q_3 = 1/tube_q_3;
-    const real tube_c_2 = inv_tube_q_3*tube_root_1;
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
     /* (potential) */
-    const real tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z;
-    const real tube_potential_t_4 = m->tube_acc_3_t[i]*tube_c_1 +
-        m->tube_acc_3_t_2[i]*tube_s_1;
-    const real tube_potential_t_5 = tube_c_1*m->tube_potential_t[i] +
-        m->tube_potential_t_2[i]*tube_s_1;
-    const real tube_b_in_spec2_y = tube_c_1*m->tube_potential_t_2[i] -
-        m->tube_potential_t[i]*tube_s_1;
-    const real tube_b_in_spec2_x = tube_c_2*tube_potential_t_5 +
-        tube_e_1_in_axes2_x*m->tube_potential_t_3[i];
-    const real tube_b_in_spec2_z = tube_c_2*m->tube_potential_t_3[i] -
-        tube_e_1_in_axes2_x*tube_potential_t_5;
-    const real tube_potential_t_6 = (tube_e_1_in_axes2_x*tube_potential_t_4 -
-        m->tube_acc_3_t_3[i]*tube_c_2)*(m->tube_h_2_in_spec2_z[i] + m->tube_h_3_in_spec2_z[i]
-        + tube_b_in_spec2_z*m->tube_link2_mass[i] + tube_b_in_spec2_z*m->tube_link3_mass[i]) -
-        (m->tube_acc_3_t_2[i]*tube_c_1 -
-        m->tube_acc_3_t[i]*tube_s_1)*(m->tube_h_2_in_spec2_y[i] + m->tube_h_3_in_spec2_y[i] +
+    const real tube_potential_t_4 = v.tube_c_1*m->tube_potential_t[i] +
+        m->tube_potential_t_2[i]*v.tube_s_1;
+    const real tube_b_in_spec2_y = v.tube_c_1*m->tube_potential_t_2[i] -
+        m->tube_potential_t[i]*v.tube_s_1;
+    const real tube_b_in_spec2_x = v.tube_c_2*tube_potential_t_4 +
+        v.tube_e_1_in_axes2_x*m->tube_potential_t_3[i];
+    const real tube_b_in_spec2_z = v.tube_c_2*m->tube_potential_t_3[i] -
+        v.tube_e_1_in_axes2_x*tube_potential_t_4;
+    const real tube_potential_t_5 = v.tube_g_in_axes2_y*(m->tube_h_2_in_spec2_z[i] +
+        m->tube_h_3_in_spec2_z[i] + tube_b_in_spec2_z*m->tube_link2_mass[i] +
+        tube_b_in_spec2_z*m->tube_link3_mass[i]) -
+        v.tube_g_in_axes2_z*(m->tube_h_2_in_spec2_y[i] + m->tube_h_3_in_spec2_y[i] +
         tube_b_in_spec2_y*m->tube_link2_mass[i] + tube_b_in_spec2_y*m->tube_link3_mass[i]) -
-        (m->tube_acc_3_t_3[i]*tube_e_1_in_axes2_x +
-        tube_c_2*tube_potential_t_4)*(m->tube_h_2_in_spec2_x[i] + m->tube_h_3_in_spec2_x[i] +
-        tube_b_in_spec2_x*m->tube_link2_mass[i] + m->tube_link3_mass[i]*(tube_q_3 +
+        v.tube_g_in_axes2_x*(m->tube_h_2_in_spec2_x[i] + m->tube_h_3_in_spec2_x[i] +
+        tube_b_in_spec2_x*m->tube_link2_mass[i] + m->tube_link3_mass[i]*(v.tube_q_3 +
         tube_b_in_spec2_x));
     /* (potential) */
-    gather(&terms[0*count + k], add, tube_potential_t_6);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(magnitude(tube_root_1_t) > LEAST_3) + UNLESS(magnitude(tube_q_3_t)
-        > LEAST_3);
+    gather(&terms[0*count + k], add, tube_potential_t_5);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3);
 }
 
-INLINE void potential_place_tube(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_tube(size_t k, size_t at, size_t count, const real *o, status_flags
+    *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -8181,15 +6069,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 {
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
-    const real potential_t = s[9*w + k];
+    const real potential_t = s[18*w + k];
     const real potential_ = potential_of_legs - potential_t;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[10] = {0}, sums[1] = {0};
+    real s[19] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
     values v;
@@ -8220,7 +6108,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -8253,10 +6141,6 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
         lesser(lesser(lesser(R(0.7231023985306559)*root(ups_pivot_size),
         R(0.7231023985306559)*root(ups_pivot_size_2)),
         R(0.7231023985306559)*ups_pivot_size_3), R(0.7231023985306559)*ups_pivot_size_4);
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-    const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
-    const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
-    const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
     /* (spread) rms distance of the platform points from their centroid */
     const real ups_spread_t = m->b_c_in_platform_x - m->ups_platform_point_x[i];
     const real ups_spread_t_2 = m->b_c_in_platform_y - m->ups_platform_point_y[i];
@@ -8266,24 +6150,24 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
     /* (spread) */
     gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
     /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.ups_w_3_x;
-    o[1*count + k] = v.ups_w_3_y;
-    o[2*count + k] = v.ups_w_3_z;
-    /* (ups-H_a_3) */
-    o[3*count + k] = ups_H_a_3_x;
-    o[4*count + k] = ups_H_a_3_y;
-    o[5*count + k] = ups_H_a_3_z;
+    o[0*count + k] = v.axis_x_ups_axes2_x;
+    o[1*count + k] = v.axis_x_ups_axes2_y;
+    o[2*count + k] = v.axis_x_ups_axes2_z;
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.ups_H_a_3_x;
+    o[4*count + k] = v.ups_H_a_3_y;
+    o[5*count + k] = v.ups_H_a_3_z;
     /* (ups-G) */
     o[6*count + k] = ups_least_pivots;
-    o[8*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + ((ups_H_a_3_x +
-        ups_H_a_3_y) + (ups_H_a_3_z + ups_least_pivots));
+    o[8*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
+        ((v.ups_H_a_3_x + v.ups_H_a_3_y) + (v.ups_H_a_3_z + ups_least_pivots));
     o[7*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void condition_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *pivots, verdict *t)
+    *o, real *H, real *pivots, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -8301,216 +6185,22 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t i, size_t j,
 {
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
-    /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
-        v.tube_n_m1_t_11*v.tube_s_1) -
-        v.tube_c_2*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_yx[i] +
-        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_yy[i] +
-        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_yz[i]);
-    /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-    const real tube_n_m2_t = v.tube_n_m1_t_7*m->tube_platform_joint_rotation_zx[i] +
-        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_zy[i] +
-        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_zz[i];
-    const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*m->tube_platform_joint_rotation_zx[i]
-        + v.tube_n_m1_t_2*m->tube_platform_joint_rotation_zy[i] +
-        v.tube_n_m1_t_3*m->tube_platform_joint_rotation_zz[i]) +
-        v.tube_s_1*(v.tube_n_m1_t_4*m->tube_platform_joint_rotation_zx[i] +
-        v.tube_n_m1_t_5*m->tube_platform_joint_rotation_zy[i] +
-        v.tube_n_m1_t_6*m->tube_platform_joint_rotation_zz[i]);
-    const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
-        v.tube_e_1_in_axes2_x*tube_n_m2_t;
-    const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
-        v.tube_c_2*tube_n_m2_t;
-    const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
-        v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
-    /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-    const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
-        v.tube_n_m3_t_2*v.tube_s_1) +
-        v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_xx[i] +
-        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_xy[i] +
-        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_xz[i]);
-    const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
-    /* (tube-f_c1) force part of constraint wrench 1 */
-    const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-        tube_n_m1_in_axes2_z*tube_n_m3_t_3;
-    /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
-    const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-    const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
-    /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
-    const real tube_m3_c1_t = inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
-    /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
-    const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
-    /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
-    const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
-    /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-    const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
-    /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-    const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
-    /* (tube-mu_c1) the moment that goes with it */
-    const real tube_mu_c1_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c1_t;
-    const real tube_mu_c1_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_m3_c1_t;
-    const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
-        tube_m3_c1_t*tube_n_m3_in_axes2_z;
-    /* (tube-mu_c2) the moment that goes with it */
-    const real tube_mu_c2_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c2_t;
-    const real tube_mu_c2_t = v.tube_end_p3_in_axes2_z*tube_m3_c2;
-    const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
-        tube_m1_c2_t*tube_n_m1_in_axes2_z;
-    /* (tube-size_c3) size of the moment */
-    const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
-    /* (tube-mu1_c3) moment along direction 1 that goes with it */
-    const real inv_tube_size_c3 = 1/tube_size_c3;
-    const real tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3;
-    /* (tube-mu3_c3) moment along direction 3 that goes with it */
-    const real tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t;
-    /* (tube-mu_c3) the moment that goes with it */
-    const real axis_x_tube_axes2_x = v.tube_n_c1_y*v.tube_n_c2_z -
-        v.tube_n_c1_z*v.tube_n_c2_y;
-    const real axis_x_tube_axes2_y = v.tube_n_c1_z*v.tube_n_c2_x -
-        v.tube_n_c1_x*v.tube_n_c2_z;
-    const real axis_x_tube_axes2_z = v.tube_n_c1_x*v.tube_n_c2_y -
-        v.tube_n_c1_y*v.tube_n_c2_x;
-    const real tube_mu_c3_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_mu3_c3_t -
-        inv_tube_size_c3*tube_end_p2_in_axes2_y;
-    const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y -
-        v.tube_end_p1_in_axes2_z*tube_mu1_c3;
-    const real tube_mu_c3_in_axes2_z = tube_mu1_c3*tube_n_m1_in_axes2_z -
-        tube_mu3_c3_t*tube_n_m3_in_axes2_z;
-    const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
-        tube_mu_c3_in_axes2_y*v.tube_n_c1_x + tube_mu_c3_in_axes2_z*v.tube_n_c2_x;
-    const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
-        tube_mu_c3_in_axes2_y*v.tube_n_c1_y + tube_mu_c3_in_axes2_z*v.tube_n_c2_y;
-    const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
-        tube_mu_c3_in_axes2_y*v.tube_n_c1_z + tube_mu_c3_in_axes2_z*v.tube_n_c2_z;
     /* (tube-w_1) force part of reciprocal wrench 1 */
-    const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_3;
-    const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
-    const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
-    const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-    const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
-    const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
-    const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
-    const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
-    const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3;
-    const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
-    const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3_t;
-    const real tube_w_1_t_13 = root(v.tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
-        tube_w_1_t_5*tube_w_1_t_5);
-    const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-    const real tube_w_1_t_14 = inv_tube_w_1_t_13*v.tube_q_3;
-    const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
-    const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
-    const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
-        tube_w_1_t_14;
-    const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
-    const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-    const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-    const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
-    const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
-    const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-    const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
-    const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
-    const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
-    const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
-    const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-    const real tube_w_1_t_29 = v.tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
-    const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-    const real tube_w_1_t_31 = v.tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
-    const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
-    const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-        + tube_w_1_t_20*tube_w_1_t_20);
-    const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-    const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-    const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-    const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-    const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-        tube_w_1_t_24*tube_w_1_t_36;
-    const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-    const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-    const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-    const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-        tube_w_1_t_27*tube_w_1_t_35;
-    const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-    const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-    const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-    const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
-        tube_w_1_t_31*tube_w_1_t_35;
-    const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-    const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-    const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-    const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-        tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-    const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-    const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-    const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-    const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-    const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-        tube_w_1_t_43*tube_w_1_t_51;
-    const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-    const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-    const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-    const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 - inv_tube_w_1_t_49*v.tube_root_1 +
-        tube_w_1_t_48*tube_w_1_t_52 - tube_w_1_t_47*tube_w_1_t_51;
-    const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-    const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-    const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-    const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-    const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-        + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-        tube_w_1_t_57*tube_w_1_t_57);
-    const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-    const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-    const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-    const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-    const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-    const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-    const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-        tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-        tube_w_1_t_2*tube_w_1_t_67;
-    const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-    const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-    const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-    const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-    const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-    const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-        + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-        tube_w_1_t_74*tube_w_1_t_74);
     const real tube_pivot_size = magnitude(v.tube_root_1_t);
     const real tube_pivot_size_2 = magnitude(v.tube_q_3_t);
-    const real tube_pivot_size_3 = magnitude(tube_f_c1_t);
-    const real tube_pivot_size_4 = magnitude(tube_size_c3);
-    const real tube_pivot_size_5 = magnitude(tube_w_1_t_13);
-    const real tube_pivot_size_6 = magnitude(tube_w_1_t_33);
-    const real tube_pivot_size_7 = magnitude(tube_w_1_t_49);
-    const real tube_pivot_size_8 = magnitude(tube_w_1_t_63);
-    const real tube_pivot_size_9 = magnitude(tube_w_1_t_75);
+    const real tube_pivot_size_3 = magnitude(v.tube_f_c1_t);
+    const real tube_pivot_size_4 = magnitude(v.tube_size_c3);
+    const real tube_pivot_size_5 = magnitude(v.tube_w_1_t_13);
+    const real tube_pivot_size_6 = magnitude(v.tube_w_1_t_33);
+    const real tube_pivot_size_7 = magnitude(v.tube_w_1_t_49);
+    const real tube_pivot_size_8 = magnitude(v.tube_w_1_t_63);
+    const real tube_pivot_size_9 = magnitude(v.tube_w_1_t_75);
     const real tube_least_pivots =
         lesser(lesser(lesser(lesser(lesser(lesser(lesser(lesser(R(0.7407407407407407)*root(tube_pivot_size),
         R(0.7407407407407407)*root(tube_pivot_size_2)), tube_pivot_size_3),
         tube_pivot_size_4), R(0.7407407407407407)*tube_pivot_size_5), tube_pivot_size_6),
         tube_pivot_size_7), R(0.7407407407407407)*tube_pivot_size_8),
         R(0.7407407407407407)*tube_pivot_size_9);
-    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real tube_Hk_a_1_x = v.tube_n_c1_z*v.tube_q_y - v.tube_n_c1_y*v.tube_q_z +
-        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*v.tube_n_c1_x +
-        tube_mu_c1_in_axes2_z*v.tube_n_c2_x;
-    const real tube_Hk_a_1_y = v.tube_n_c1_x*v.tube_q_z - v.tube_n_c1_z*v.tube_q_x +
-        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*v.tube_n_c1_y +
-        tube_mu_c1_in_axes2_z*v.tube_n_c2_y;
-    const real tube_Hk_a_1_z = v.tube_n_c1_y*v.tube_q_x - v.tube_n_c1_x*v.tube_q_y +
-        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*v.tube_n_c1_z +
-        tube_mu_c1_in_axes2_z*v.tube_n_c2_z;
-    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-    const real tube_Hk_a_2_x = v.tube_n_c2_z*v.tube_q_y - v.tube_n_c2_y*v.tube_q_z +
-        tube_mu_c2_in_axes2_y*v.tube_n_c1_x + tube_mu_c2_in_axes2_z*v.tube_n_c2_x -
-        axis_x_tube_axes2_x*tube_mu_c2_t;
-    const real tube_Hk_a_2_y = v.tube_n_c2_x*v.tube_q_z - v.tube_n_c2_z*v.tube_q_x +
-        tube_mu_c2_in_axes2_y*v.tube_n_c1_y + tube_mu_c2_in_axes2_z*v.tube_n_c2_y -
-        axis_x_tube_axes2_y*tube_mu_c2_t;
-    const real tube_Hk_a_2_z = v.tube_n_c2_y*v.tube_q_x - v.tube_n_c2_x*v.tube_q_y +
-        tube_mu_c2_in_axes2_y*v.tube_n_c1_z + tube_mu_c2_in_axes2_z*v.tube_n_c2_z -
-        axis_x_tube_axes2_z*tube_mu_c2_t;
     /* (spread) */
     const real tube_spread_t = m->b_c_in_platform_x - m->tube_platform_point_x[i];
     const real tube_spread_t_2 = m->b_c_in_platform_y - m->tube_platform_point_y[i];
@@ -8520,41 +6210,42 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t i, size_t j,
     /* (spread) */
     gather(&terms[1*count + k], add, tube_spread_t_4);  /* spread_tube */
     /* (tube-n_c1) unit force of the constraint wrench */
-    o[0*count + k] = v.tube_n_c1_x;
-    o[1*count + k] = v.tube_n_c1_y;
-    o[2*count + k] = v.tube_n_c1_z;
-    /* (tube-Hk_a_1) */
-    o[3*count + k] = tube_Hk_a_1_x;
-    o[4*count + k] = tube_Hk_a_1_y;
-    o[5*count + k] = tube_Hk_a_1_z;
+    o[0*count + k] = v.axis_y_tube_axes2_x;
+    o[1*count + k] = v.axis_y_tube_axes2_y;
+    o[2*count + k] = v.axis_y_tube_axes2_z;
+    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.tube_Hk_a_1_x;
+    o[4*count + k] = v.tube_Hk_a_1_y;
+    o[5*count + k] = v.tube_Hk_a_1_z;
     /* (tube-n_c2) unit force of the constraint wrench */
-    o[6*count + k] = v.tube_n_c2_x;
-    o[7*count + k] = v.tube_n_c2_y;
-    o[8*count + k] = v.tube_n_c2_z;
-    /* (tube-Hk_a_2) */
-    o[9*count + k] = tube_Hk_a_2_x;
-    o[10*count + k] = tube_Hk_a_2_y;
-    o[11*count + k] = tube_Hk_a_2_z;
+    o[6*count + k] = v.axis_z_tube_axes2_x;
+    o[7*count + k] = v.axis_z_tube_axes2_y;
+    o[8*count + k] = v.axis_z_tube_axes2_z;
+    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.tube_Hk_a_2_x;
+    o[10*count + k] = v.tube_Hk_a_2_y;
+    o[11*count + k] = v.tube_Hk_a_2_z;
     /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
-    o[12*count + k] = tube_mu_c3_x;
-    o[13*count + k] = tube_mu_c3_y;
-    o[14*count + k] = tube_mu_c3_z;
+    o[12*count + k] = v.tube_mu_c3_x;
+    o[13*count + k] = v.tube_mu_c3_y;
+    o[14*count + k] = v.tube_mu_c3_z;
     /* (tube-w_1) */
     o[15*count + k] = tube_least_pivots;
-    o[17*count + k] = (((v.tube_n_c1_x + v.tube_n_c1_y) + (v.tube_n_c1_z + tube_Hk_a_1_x)) +
-        ((tube_Hk_a_1_y + tube_Hk_a_1_z) + (v.tube_n_c2_x + v.tube_n_c2_y))) +
-        (((v.tube_n_c2_z + tube_Hk_a_2_x) + (tube_Hk_a_2_y + tube_Hk_a_2_z)) + ((tube_mu_c3_x
-        + tube_mu_c3_y) + (tube_mu_c3_z + tube_least_pivots)));
+    o[17*count + k] = (((v.axis_y_tube_axes2_x + v.axis_y_tube_axes2_y) +
+        (v.axis_y_tube_axes2_z + v.tube_Hk_a_1_x)) + ((v.tube_Hk_a_1_y + v.tube_Hk_a_1_z) +
+        (v.axis_z_tube_axes2_x + v.axis_z_tube_axes2_y))) + (((v.axis_z_tube_axes2_z +
+        v.tube_Hk_a_2_x) + (v.tube_Hk_a_2_y + v.tube_Hk_a_2_z)) + ((v.tube_mu_c3_x +
+        v.tube_mu_c3_y) + (v.tube_mu_c3_z + tube_least_pivots)));
     o[16*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
-        UNLESS(magnitude(tube_size_c3) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5)
-        + UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
-        LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
-        UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
 }
 
 INLINE void condition_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *Hk, real *pivots, verdict *t)
+    *Hk, real *pivots, status_flags *t)
 {
     Hk[0*w + k] = o[0*count + at];
     Hk[NC*w + k] = o[1*count + at];
@@ -8576,7 +6267,7 @@ INLINE void condition_place_tube(size_t w, size_t k, size_t at, size_t count, co
     t->total[k] += o[17*count + at];
 }
 
-INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, verdict *t)
+INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_tube = sums[1*w + k];
@@ -8588,9 +6279,9 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
-    *pivots, real *reach, verdict *t)
+    *pivots, real *reach, status_flags *t)
 {
-    real s[9] = {0}, sums[2] = {0};
+    real s[18] = {0}, sums[2] = {0};
     real terms_ups[2*LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[2*LEGS(LEGS_OF_tube)] = {0}, o_tube[18*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
@@ -8624,249 +6315,228 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
 
 int quadrupod_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int quadrupod_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int quadrupod_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int quadrupod_Hk(const prepared *m, const real *X, real *Hk_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     Hk_run(m, X, Hk_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    return settled(&why, NV*NC, Hk_out);
+    return final_status(&why, NV*NC, Hk_out);
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
     real X_in[NQ*LANES], Hk[NV*NC*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     Hk_run_lanes(m, X, Hk, &why);
-    suspect(&why, code);
-    deliver(NV*NC, Hk, Hk_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NC, Hk, Hk_out);
 }
 
 int quadrupod_constraints(const prepared *m, const real *X, real *constraints_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     constraints_run(m, X, constraints_out, &why);
     if (!is_finite(why.total[0])) {
         check(3, 1, constraints_out, why.overflow);
     }
-    return settled(&why, 3, constraints_out);
+    return final_status(&why, 3, constraints_out);
 }
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
     real X_in[NQ*LANES], constraints[3*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     constraints_run_lanes(m, X, constraints, &why);
-    suspect(&why, code);
-    deliver(3, constraints, constraints_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(3, constraints, constraints_out);
 }
 
 int quadrupod_constraint_bias(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     constraint_bias_run(m, X, V, constraint_bias_out, &why);
     if (!is_finite(why.total[0])) {
         check(3, 1, constraint_bias_out, why.overflow);
     }
-    return settled(&why, 3, constraint_bias_out);
+    return final_status(&why, 3, constraint_bias_out);
 }
 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[3*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     constraint_bias_run_lanes(m, X, V, constraint_bias, &why);
-    suspect(&why, code);
-    deliver(3, constraint_bias, constraint_bias_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(3, constraint_bias, constraint_bias_out);
 }
 
 int quadrupod_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int quadrupod_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int quadrupod_joint_accelerations(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int quadrupod_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real *Z_out,
     real *H_out)
 {
     real Hk[NV*NC] = {0}, constraint_bias[3] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, Hk, constraint_bias, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
@@ -8875,9 +6545,9 @@ int quadrupod_dynamics(const prepared *m, const real *X, const real *V, real *M_
     }
     check(NV*NC, 1, Hk, why.overflow);
     check(3, 1, constraint_bias, why.overflow);
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -8885,17 +6555,17 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES],
         constraint_bias[3*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     add_up(NV*NC, Hk, why.total);
     add_up(3, constraint_bias, why.total);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -8958,14 +6628,9 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
         scale_columns_1[NV*NU] = {0}, product_1[NC*NU] = {0}, times_1[NC] = {0}, least_norm_1[NU] =
         {0}, tau[NU] = {0}, times_2[NV] = {0}, subtract_2[NV] = {0}, product_2[NC*NC] = {0},
         times_3[NC] = {0}, unsure_lambda_[1] = {0}, work[NC*PADDED(NC)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     require_positive(NU, 1, weights, why.invalid);
     weights = optional(NU, weights, no_weights, why.invalid);
@@ -9004,8 +6669,8 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
     }
     check(NU, 1, tau, why.overflow);
     copy(NU, tau, tau_out);
-    settled(&why, NU, tau_out);
-    return settled(&why, NC, lambda_out);
+    final_status(&why, NU, tau_out);
+    return final_status(&why, NC, lambda_out);
 }
 
 int quadrupod_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
@@ -9015,14 +6680,9 @@ int quadrupod_forward_dynamics(const prepared *m, const real *X, const real *V, 
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, constraint_bias[3] = {0},
         times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, negative_1[3] = {0}, join_1[9] =
         {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV + NC))];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -9044,8 +6704,8 @@ int quadrupod_forward_dynamics(const prepared *m, const real *X, const real *V, 
     check(NC, 1, lambda_, why.overflow);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    settled(&why, NV, A_out);
-    return settled(&why, NC, lambda_out);
+    final_status(&why, NV, A_out);
+    return final_status(&why, NC, lambda_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -9055,7 +6715,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[3*LANES], times_1[NV*LANES] =
         {0}, add_1[NV*LANES], subtract_1[NV*LANES], negative_1[3*LANES], join_1[9*LANES] = {0},
         solve_1[((NV + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -9079,9 +6739,9 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     const real *const lambda_ = solve_1 + NV*LANES;
     add_up(NV, A, why.total);
     add_up(NC, lambda_, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
-    deliver(NC, lambda_, lambda_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
+    copy_side_by_side(NC, lambda_, lambda_out);
 }
 
 int quadrupod_complete_acceleration(const prepared *m, const real *X, const real *V, const real
@@ -9091,13 +6751,11 @@ int quadrupod_complete_acceleration(const prepared *m, const real *X, const real
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int quadrupod_leg_reactions(const prepared *m, const real *X, const real *V, const real *A, const
@@ -9112,14 +6770,9 @@ int quadrupod_leg_reactions(const prepared *m, const real *X, const real *V, con
         product_2[NC*NC] = {0}, times_3[NC] = {0}, solve_1[NC] = {0}, unsure_solve_1[1] = {0},
         leg_force[6*NL] = {0}, actuator[24] = {0}, constraint_direction[6*NC] = {0},
         add_forces_1[6*NL] = {0}, forces[6*NL] = {0}, work[NC*PADDED(NC)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -9151,22 +6804,16 @@ int quadrupod_leg_reactions(const prepared *m, const real *X, const real *V, con
         forces[i] = add_forces_1[i];
     }
     add_forces(NC, 6, 1, places_forces, solve_1, constraint_direction, forces);
-    check(6*NL, 1, forces, why.overflow);
-    copy(6*NL, forces, forces_out);
-    return settled(&why, 6*NL, forces_out);
+    return finished(6*NL, forces, forces_out, &why);
 }
 
 int quadrupod_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -9175,8 +6822,8 @@ int quadrupod_energy(const prepared *m, const real *X, const real *V, real *kine
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int quadrupod_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -9186,9 +6833,9 @@ int quadrupod_condition(const prepared *m, const real *X, real *sigma_out, real 
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
@@ -9209,8 +6856,8 @@ int quadrupod_condition(const prepared *m, const real *X, real *sigma_out, real 
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NU, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NU, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int quadrupod_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
@@ -9222,9 +6869,9 @@ int quadrupod_condition_constrained(const prepared *m, const real *X, real *sigm
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         beside_1[NV*(NU + NC)] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*(NU + NC)] = {0},
         sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
@@ -9245,8 +6892,8 @@ int quadrupod_condition_constrained(const prepared *m, const real *X, real *sigm
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int quadrupod_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -9259,13 +6906,12 @@ int quadrupod_manipulability(const prepared *m, const real *X, real *measure_out
         {0}, choose_length_2[1] = {0}, divide_rows_2[NV*NC] = {0}, transposed_1[NC*NV] = {0},
         null_basis_1[NV*NC] = {0}, transposed_2[NC*NV] = {0}, product_1[NC*NU] = {0},
         singular_values_1[NC] = {0}, measure[1] = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -9275,9 +6921,8 @@ int quadrupod_manipulability(const prepared *m, const real *X, real *measure_out
         divide_rows_1[i] = H[i];
     }
     divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
-    const real *const entry_2 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_2[i] = entry_2[i] - entry_2[i];
+        subtract_2[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_2[i] = subtract_2[i] > 0 ? subtract_2[i] : lengths[i] > TINY*lengths[1 + i]
@@ -9299,8 +6944,8 @@ int quadrupod_manipulability(const prepared *m, const real *X, real *measure_out
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int quadrupod_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -9311,14 +6956,13 @@ int quadrupod_singularity_distance(const prepared *m, const real *X, real *actua
         beside_1[NV*(NU + NC)] = {0}, subtract_1[1] = {0}, choose_length_1[1] = {0},
         divide_rows_1[NV*(NU + NC)] = {0}, singular_values_1[NV] = {0}, spread_1[1] = {0},
         actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
     beside(NV, NU, NC, H, Hk, beside_1);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -9336,8 +6980,8 @@ int quadrupod_singularity_distance(const prepared *m, const real *X, real *actua
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
 int quadrupod_force_distribution(const prepared *m, const real *X, const real *V, const real *A,
@@ -9351,17 +6995,10 @@ int quadrupod_force_distribution(const prepared *m, const real *X, const real *V
         times_1[NC] = {0}, least_norm_1[NU] = {0}, null_basis_1[NU] = {0}, transposed_1[NU] = {0},
         product_2[NU*NU] = {0}, times_2[NU] = {0}, add_1[NU] = {0}, tau[NU] = {0}, times_3[NV] = {0},
         subtract_2[NV] = {0}, product_3[NC*NC] = {0}, times_4[NC] = {0}, work[NC*PADDED(NC)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV) + total(tau_min, NU) +
-        total(tau_max, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-        check(NU, 1, tau_min, why.invalid);
-        check(NU, 1, tau_max, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
+    check_two(NU, tau_min, NU, tau_max, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     reference = optional(NU, reference, no_reference, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
@@ -9392,21 +7029,18 @@ int quadrupod_force_distribution(const prepared *m, const real *X, const real *V
     check(NU, 1, tau, why.overflow);
     check(NC, 1, lambda_out, why.overflow);
     copy(NU, tau, tau_out);
-    settled(&why, NU, tau_out);
-    return settled(&why, NC, lambda_out);
+    final_status(&why, NU, tau_out);
+    return final_status(&why, NC, lambda_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
     real q[NJ] = {0}, q_of_inverse_kinematics_from_2[4] = {0}, subtract_1[NU] = {0}, constraints[3] =
-        {0}, negative_1[3] = {0}, gap[7] = {0};
-    verdict why;
+        {0}, negative_1[3] = {0}, residual[7] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(4, 1, quadrupod_ACTUATED, q, q_of_inverse_kinematics_from_2);
     for (size_t i = 0; i < NU; ++i) {
@@ -9416,36 +7050,32 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     for (size_t i = 0; i < 3; ++i) {
         negative_1[i] = -constraints[i];
     }
-    beside(1, NU, 3, subtract_1, negative_1, gap);
-    check(7, 1, gap, why.overflow);
-    copy(7, gap, gap_out);
-    return settled(&why, 7, gap_out);
+    beside(1, NU, 3, subtract_1, negative_1, residual);
+    return finished(7, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*(NU + NC)] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H, &why);
     Hk_run(m, X, Hk, &why);
     beside(NV, NU, NC, H, Hk, slope);
-    check(NV*(NU + NC), 1, slope, why.overflow);
-    copy(NV*(NU + NC), slope, slope_out);
-    return settled(&why, NV*(NU + NC), slope_out);
+    return finished(NV*(NU + NC), slope, slope_out, &why);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = 7, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -9457,21 +7087,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -9485,56 +7115,48 @@ int quadrupod_forward_kinematics(const prepared *m, const real *q_actuated, cons
     *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
-static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
+static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
 {
-    real constraints[3] = {0}, gap[NC] = {0};
-    verdict why;
+    real constraints[3] = {0}, residual[NC] = {0};
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < NC; ++i) {
-        gap[i] = -constraints[i];
+        residual[i] = -constraints[i];
     }
-    check(NC, 1, gap, why.overflow);
-    copy(NC, gap, gap_out);
-    return settled(&why, NC, gap_out);
+    return finished(NC, residual, residual_out, &why);
 }
 
 static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     Hk_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NC, slope_out);
+    return final_status(&why, NV*NC, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_constraint_gap(const prepared *m, const real *start, real *found)
+static int search_constraint_residual(const prepared *m, const real *start, real *found)
 {
     enum { N = NC, TRIALS = 1 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = constraint_gap_one(m, found, gap);
-    size = largest(gap, N);
+    code = constraint_residual_one(m, found, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > MET; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -9546,21 +7168,21 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = constraint_gap_one(m, trial, next);
+            tried = constraint_residual_one(m, trial, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > MET/10)) {
             break;
@@ -9573,13 +7195,11 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 int quadrupod_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
-    blame(search_constraint_gap(m, X, projected), &why);
-    check(NQ, 1, projected, why.overflow);
-    copy(NQ, projected, projected_out);
-    return settled(&why, NQ, projected_out);
+    check_one(NQ, X, why.invalid);
+    flag_status(search_constraint_residual(m, X, projected), &why);
+    return finished(NQ, projected, projected_out, &why);
 }
 
 int quadrupod_dissipation(const prepared *m, const real *X, const real *V, real *dissipation_out)
@@ -9587,289 +7207,202 @@ int quadrupod_dissipation(const prepared *m, const real *X, const real *V, real 
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int quadrupod_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int quadrupod_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int quadrupod_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int quadrupod_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, quadrupod_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int quadrupod_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, quadrupod_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int quadrupod_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, quadrupod_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int quadrupod_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int quadrupod_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
-    check(9, 1, R, why.overflow);
-    copy(9, R, R_out);
-    return settled(&why, 9, R_out);
+    return finished(9, R, R_out, &why);
 }
 
 int quadrupod_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(R, 9);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(9, 1, R, why.invalid);
-    }
+    check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int quadrupod_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const V_from_3 = V + 3;
     const real *const X_from_3 = X + 3;
     quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
-    const real *const V_from_0 = V;
-    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    beside(1, 3, 4, V, quaternion_rate_1, X_dot);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int quadrupod_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(rpy, 3);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(3, 1, rpy, why.invalid);
-    }
+    check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int quadrupod_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
-    const real *const X_from_0 = X;
+    check_two(NQ, X, NV, step, why.invalid);
     const real *const X_from_3 = X + 3;
-    const real *const step_from_0 = step;
     const real *const step_from_3 = step + 3;
     turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X_from_0[i] + step_from_0[i];
+        add_1[i] = X[i] + step[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int quadrupod_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
+    check_two(NQ, X0, NQ, X1, why.invalid);
     const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
     const real *const X1_from_3 = X1 + 3;
     turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
+        subtract_1[i] = X1[i] - X0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int quadrupod_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
-        turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
-    verdict why;
+    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
-    const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
-    const real *const X1_from_3 = X1 + 3;
-    turn_between(X0_from_3, X1_from_3, turn_between_1);
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
-    }
-    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(quadrupod_difference(X0, X1, join_1), &why);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const X0_from_0_2 = X0;
     const real *const X0_from_3_2 = X0 + 3;
-    const real *const scale_1_from_0 = scale_1;
     const real *const scale_1_from_3 = scale_1 + 3;
     turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
+        add_1[i] = X0[i] + scale_1[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

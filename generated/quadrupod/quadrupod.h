@@ -128,9 +128,10 @@ typedef struct {
             ups_base_frame_zz[4], ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4],
             ups_branch_1[4], ups_branch_2[4], ups_h_2_in_spec2_x[4], ups_h_2_in_spec2_y[4],
             ups_h_2_in_spec2_z[4], ups_h_3_in_spec2_x[4], ups_h_3_in_spec2_y[4],
-            ups_h_3_in_spec2_z[4], ups_link2_mass[4], ups_link3_mass[4], ups_platform_point_x[4],
-            ups_platform_point_y[4], ups_platform_point_z[4], ups_potential_t[4],
-            ups_potential_t_2[4], ups_potential_t_3[4];
+            ups_h_3_in_spec2_z[4], ups_h_group_2_in_axes2_x[4], ups_h_group_2_in_axes2_y[4],
+            ups_h_group_2_in_axes2_z[4], ups_link2_mass[4], ups_link3_mass[4],
+            ups_platform_point_x[4], ups_platform_point_y[4], ups_platform_point_z[4],
+            ups_potential_t[4], ups_potential_t_2[4], ups_potential_t_3[4];
     /* 1 legs of type tube */
     quadrupod_real tube_J_group_2_in_axes2_xx[1], tube_J_group_2_in_axes2_xy[1],
             tube_J_group_2_in_axes2_xz[1], tube_J_group_2_in_axes2_yy[1],
@@ -176,7 +177,7 @@ int quadrupod_M(const quadrupod_model *model, const quadrupod_real *X, quadrupod
 size_t quadrupod_M_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
     quadrupod_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1246 mul, 901 add, 17 div, 16 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1255 mul, 895 add, 17 div, 16 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int quadrupod_Z(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real *V,
     quadrupod_real *Z);
@@ -223,7 +224,7 @@ int quadrupod_joint_rates(const quadrupod_model *model, const quadrupod_real *X,
 size_t quadrupod_joint_rates_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, const quadrupod_real *V, quadrupod_real *rates, int *status);
 
-/* Accelerations of all joints. 831 mul, 532 add, 17 div, 16 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 822 mul, 526 add, 17 div, 16 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int quadrupod_joint_accelerations(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, quadrupod_real *accelerations);
@@ -231,14 +232,14 @@ size_t quadrupod_joint_accelerations_batch(const quadrupod_model *model, size_t 
     quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, quadrupod_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 2218 mul, 1637 add, 17 div, 16 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 2191 mul, 1607 add, 17 div, 16 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int quadrupod_dynamics(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
     *V, quadrupod_real *M, quadrupod_real *Z, quadrupod_real *H);
 size_t quadrupod_dynamics_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
     const quadrupod_real *V, quadrupod_real *M, quadrupod_real *Z, quadrupod_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1392 mul, 1032
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1373 mul, 1009
    add, 17 div, 16 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A
    (NV), wrench (NW, or NULL). Out: tau (NU), lambda (NC). */
 int quadrupod_inverse_dynamics(const quadrupod_model *model, const quadrupod_real *X, const
@@ -249,7 +250,7 @@ size_t quadrupod_inverse_dynamics_batch(const quadrupod_model *model, size_t n, 
     *wrench, quadrupod_real *tau, quadrupod_real *lambda, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least sum of weights tau^2.
-   1392 mul, 1032 add, 17 div, 16 sqrt, 0 trig; the solution of the linear equations apart. In: X
+   1373 mul, 1009 add, 17 div, 16 sqrt, 0 trig; the solution of the linear equations apart. In: X
    (NQ), V (NV), A (NV), wrench (NW, or NULL), weights (NU, positive). Out: tau (NU), lambda (NC).
    */
 int quadrupod_inverse_dynamics_weighted(const quadrupod_model *model, const quadrupod_real *X,
@@ -260,7 +261,7 @@ size_t quadrupod_inverse_dynamics_weighted_batch(const quadrupod_model *model, s
     *wrench, const quadrupod_real *weights, quadrupod_real *tau, quadrupod_real *lambda, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2218 mul, 1637 add, 17 div, 16
+/* Acceleration A under the actuator forces tau and the wrench. 2191 mul, 1607 add, 17 div, 16
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV), lambda (NC). */
 int quadrupod_forward_dynamics(const quadrupod_model *model, const quadrupod_real *X, const
@@ -281,7 +282,7 @@ size_t quadrupod_complete_acceleration_batch(const quadrupod_model *model, size_
     *wrench, quadrupod_real *completed, int *status);
 
 /* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
-   give the forces of inverse_dynamics. 1245 mul, 885 add, 17 div, 16 sqrt, 0 trig; inverse
+   give the forces of inverse_dynamics. 1232 mul, 883 add, 17 div, 16 sqrt, 0 trig; inverse
    dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (5 x 6). */
 int quadrupod_leg_reactions(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench, quadrupod_real
@@ -336,7 +337,7 @@ size_t quadrupod_singularity_distance_batch(const quadrupod_model *model, size_t
 /* Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference. By
    the dual active-set method of Goldfarb and Idnani; continuous along a motion. Impossible
    (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull with
-   negative forces: tau_max = -t keeps tensions of t at least. 1392 mul, 1032 add, 17 div, 16
+   negative forces: tau_max = -t keeps tensions of t at least. 1373 mul, 1009 add, 17 div, 16
    sqrt, 0 trig; the search apart. In: X (NQ), V (NV), A (NV), tau_min (NU), tau_max (NU), wrench
    (NW, or NULL), reference (NU, or NULL). Out: tau (NU), lambda (NC). */
 int quadrupod_force_distribution(const quadrupod_model *model, const quadrupod_real *X, const
@@ -406,7 +407,7 @@ int quadrupod_actuator_rates(const quadrupod_model *model, const quadrupod_real 
 size_t quadrupod_actuator_rates_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, const quadrupod_real *V, quadrupod_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 831 mul, 532 add, 17 div, 16 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 822 mul, 526 add, 17 div, 16 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int quadrupod_actuator_accelerations(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, quadrupod_real *accelerations);

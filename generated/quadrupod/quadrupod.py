@@ -768,6 +768,10 @@ def _prepare(p):
     ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx
     ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy
     ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz
+    # (ups-h_group_2) first moments of the links that turn with link 2
+    ups_h_group_2_in_axes2_x = ups_h_2_in_spec2_x + ups_h_3_in_spec2_x
+    ups_h_group_2_in_axes2_y = -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z
+    ups_h_group_2_in_axes2_z = ups_h_2_in_spec2_y + ups_h_3_in_spec2_y
     # (h_star) first moment about the platform origin
     ups_h_star_t = ups_link3_mass*ups_platform_point_x
     ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y
@@ -915,9 +919,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -927,9 +931,9 @@ def _prepare(p):
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
                     ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y,
-                    ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-                    ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y,
+                    ups_h_group_2_in_axes2_z, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
                 (_tube,
@@ -986,9 +990,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
@@ -997,8 +1001,8 @@ def _prepare(p):
                     ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
                     ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
                     ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
                 (_tube,
@@ -1079,8 +1083,8 @@ def _prepare(p):
                     ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
                     ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
                     ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
                 (_tube,
@@ -1196,9 +1200,10 @@ def _prepare(p):
                     ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
                     ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
                     ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link3_mass,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
+                    ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
                 ),
                 (_tube,
         (tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz, tube_J_group_2_in_axes2_yz,
@@ -1923,11 +1928,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -2216,17 +2221,17 @@ def _spread(a, n):
     return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
-def _missed_bound(start, t, bounds, side):
-    """The bound that is missed by most, and 1 for a lower, -1 for an upper one; None if none is."""
+def _violated_bound(start, t, bounds, side):
+    """The bound that is violated by most, and 1 for a lower, -1 for an upper one; None if none is."""
     size, endless = np.max(np.abs(start), axis=0)
     found = None
     for sign, bound in zip((1.0, -1.0), bounds):
         for k in np.flatnonzero(np.isfinite(bound) & (side == 0.0)).tolist():
-            gap, rate = sign * (bound[k] - t[k, 0]), -sign * t[k, 1]
+            excess, rate = sign * (bound[k] - t[k, 0]), -sign * t[k, 1]
             rate = rate if abs(rate) > _PIVOT * endless else 0.0
-            if rate > 0.0 or (rate == 0.0 and gap > _PIVOT * (size + abs(bound[k]))):
-                if found is None or (rate, gap) > found[0]:
-                    found = (rate, gap), (k, sign)
+            if rate > 0.0 or (rate == 0.0 and excess > _PIVOT * (size + abs(bound[k]))):
+                if found is None or (rate, excess) > found[0]:
+                    found = (rate, excess), (k, sign)
     return found and found[1]
 
 
@@ -2243,10 +2248,10 @@ def _at_bounds(start, gram, bounds, side):
 
 def _nearest_point(start, gram, *bounds):
     """The point (n, 2) within the bounds that is nearest to the start; None if there is none."""
-    amounts, side, new = np.zeros_like(start), np.zeros(len(start)), None
+    coefficients, side, new = np.zeros_like(start), np.zeros(len(start)), None
     for _ in range(_TURNS * len(start)):
-        t = start + gram @ amounts
-        new = new or _missed_bound(start, t, bounds, side)
+        t = start + gram @ coefficients
+        new = new or _violated_bound(start, t, bounds, side)
         if new is None:
             return _at_bounds(start, gram, bounds, side)
         p, sign = new
@@ -2254,19 +2259,19 @@ def _nearest_point(start, gram, *bounds):
         without[kept] = np.linalg.solve(gram[np.ix_(kept, kept)], sign * gram[kept, p])
         apart, clear = gram[p, p] - sign * gram[p] @ without, _PIVOT * (1.0 + without @ without)
         leaving = [k for k in kept.tolist() if side[k] * without[k] > clear]
-        steps = [(*(amounts[k, ::-1] / without[k]).tolist(), k) for k in leaving]
+        steps = [(*(coefficients[k, ::-1] / without[k]).tolist(), k) for k in leaving]
         if apart > clear:
-            gap = sign * (bounds[0 if sign > 0.0 else 1][p] - t[p, 0])
-            steps.append((-sign * t[p, 1] / apart, gap / apart, -1))
+            excess = sign * (bounds[0 if sign > 0.0 else 1][p] - t[p, 0])
+            steps.append((-sign * t[p, 1] / apart, excess / apart, -1))
         if not steps:
             return None
         *step, k = min(steps)
-        amounts -= np.outer(without, step[::-1])
-        amounts[p] += sign * np.array(step[::-1])
+        coefficients -= np.outer(without, step[::-1])
+        coefficients[p] += sign * np.array(step[::-1])
         if k < 0:
             side[p], new = sign, None
         else:
-            side[k] = amounts[k] = 0.0
+            side[k] = coefficients[k] = 0.0
     return None
 
 
@@ -2306,8 +2311,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -2315,7 +2320,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -2323,11 +2328,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -2375,15 +2380,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 2218 mul, 1637 add, 17 div, 16 sqrt, 0 trig
+# dynamics: 2191 mul, 1607 add, 17 div, 16 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2467,39 +2471,12 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_ups_xx, M_tt_ups_xy, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_ups_xx,
         M_ta_ups_xy, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yy, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy,
@@ -2514,9 +2491,10 @@ def _run_dynamics(m, X, V):
             ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
             ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
             ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
+            ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -2554,6 +2532,8 @@ def _run_dynamics(m, X, V):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
@@ -2591,17 +2571,26 @@ def _run_dynamics(m, X, V):
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
         ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
         ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-u_1) centripetal acceleration of the connection point
         ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        ups_u_1_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
+        )
+        ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x
+        ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y
+        ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z
+        ups_u_1_in_axes2_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3
         ups_u_1_in_axes2_z = (
         axis_z_ups_axes2_x*ups_u_1_x + axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z
         )
@@ -2612,6 +2601,8 @@ def _run_dynamics(m, X, V):
         ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1_o) remainder of: acceleration of joint 1
         ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
         ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_e_1_in_axes2_x
         # (ups-alpha_1_o) remainder of: angular acceleration of link 1
@@ -2621,64 +2612,64 @@ def _run_dynamics(m, X, V):
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
-        ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x
-        ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y
-        ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z
-        ups_B_2_o_in_axes2_yx = (
-        inv_ups_q_3*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
-        )
+        ups_B_2_o_in_axes2_yx = inv_ups_q_3*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_qdd_2_t)
         ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
-        # (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        ups_acc_3_o_t = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
         ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_e_1_in_axes2_x
-        ups_g_in_axes2_y = ups_acc_3_o_t*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
-        ups_acc_3_o_in_axes2_x = (
-        axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
-            - ups_g_in_axes2_x
-        )
-        ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_g_in_axes2_y
-        ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        # (ups-phi_3) inertia force of link 3 from its turning about its reference point
+        ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
         ups_d_phi_3_in_axes2_xy = inv_ups_q_3*ups_h_3_in_spec2_z
         ups_d_phi_3_in_axes2_yy = inv_ups_q_3*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
-        ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
-        ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
         ups_phi_3_o_in_axes2_x = (
-        ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
-            ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        ups_phi_3_t + ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        )
+        # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_t_2 = ups_J_group_2_in_axes2_yz*(ups_W_2_t - ups_W_2_t_2)
+        ups_mu_2_t_3 = ups_J_group_2_in_axes2_xz*(ups_mu_2_t - ups_W_2_t_2)
+        ups_mu_2_t_4 = ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_W_2_t)
+        ups_mu_2_t_5 = (
+        ups_g_in_axes2_z*ups_h_group_2_in_axes2_y - ups_g_in_axes2_y*ups_h_group_2_in_axes2_z
+        )
+        ups_mu_2_t_6 = (
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_z - ups_g_in_axes2_z*ups_h_group_2_in_axes2_x
+        )
+        ups_mu_2_t_7 = (
+        ups_g_in_axes2_y*ups_h_group_2_in_axes2_x - ups_g_in_axes2_x*ups_h_group_2_in_axes2_y
         )
         # (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
         ups_mu_2_o_in_axes2_x = (
-        ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+        ups_mu_2_t_2 + ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
             ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
-            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x - ups_mu_2_t_5 -
             ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z
+            ups_h_3_in_spec2_y*ups_u_1_in_axes2_y - ups_h_3_in_spec2_z*ups_u_1_in_axes2_z
         )
         ups_mu_2_o_in_axes2_y = (
         ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
             ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_h_3_in_spec2_y*ups_u_1_in_axes2_x - ups_mu_2_t_3 - ups_mu_2_t_6 -
             ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_h_3_in_spec2_x*ups_u_1_in_axes2_z
         )
         ups_mu_2_o_in_axes2_z = (
-        ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t -
-            ups_phi_3_o_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+        ups_mu_2_t_4 + ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
             ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
-            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
-            - ups_g_in_axes2_y*ups_h_2_in_spec2_x
+            ups_h_3_in_spec2_x*ups_u_1_in_axes2_y + ups_h_3_in_spec2_z*ups_u_1_in_axes2_x -
+            ups_mu_2_t_7 - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy
         )
+        # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_t = ups_h_3_in_spec2_z*(ups_W_2_t_2 + ups_mu_2_t)
+        ups_c_t_2 = ups_h_3_in_spec2_y*(ups_W_2_t + ups_mu_2_t)
         # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         ups_d_c_in_axes2_xz = inv_ups_q_3*ups_h_3_in_spec2_y
         ups_d_c_in_axes2_yy = (
@@ -2699,14 +2690,13 @@ def _run_dynamics(m, X, V):
         )
         # (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
-        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
-            ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
-            ups_phi_3_o_t_2)
+        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - ups_c_t - inv_ups_q_3*ups_mu_2_o_in_axes2_z
+            - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x
         )
         ups_c_o_in_axes2_z = (
-        inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x)
-            + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
-            ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
+        ups_c_t_2 + inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y -
+            ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
@@ -2891,8 +2881,9 @@ def _run_dynamics(m, X, V):
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_q_3 = 1.0/tube_q_3
         tube_c_2 = inv_tube_q_3*tube_root_1
-        # (tube-S_dot) velocity of the connection point
+        # (tube-q_2) displacement of joint 2
         tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        # (tube-S_dot) velocity of the connection point
         axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
         axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
         axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
@@ -3045,11 +3036,35 @@ def _run_dynamics(m, X, V):
         tube_mu_c1_in_axes2_z = (
         -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
         )
+        tube_mu_c1_x = (
+        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z
+        )
+        tube_mu_c1_y = (
+        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z
+        )
+        tube_mu_c1_z = (
+        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z
+        )
         # (tube-mu_c2) the moment that goes with it
         tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t
         tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2
         tube_mu_c2_in_axes2_z = (
         tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
+        )
+        tube_mu_c2_x = (
+        axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_x*tube_mu_c2_t
+        )
+        tube_mu_c2_y = (
+        axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_y*tube_mu_c2_t
+        )
+        tube_mu_c2_z = (
+        axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_z*tube_mu_c2_t
         )
         # (tube-size_c3) size of the moment
         tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
@@ -3311,6 +3326,9 @@ def _run_dynamics(m, X, V):
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
         tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
+        tube_W_2_t = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
+        tube_W_2_t_2 = tube_qd_2*tube_qd_2
+        tube_W_2_t_3 = tube_W_2_t + tube_W_2_t_2
         tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
         # (tube-u_1) centripetal acceleration of the connection point
         tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
@@ -3444,6 +3462,11 @@ def _run_dynamics(m, X, V):
         tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o
         tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y
         tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x
+        # (tube-acc_3) acceleration of the reference point of link 3, less gravity
+        tube_acc_3_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
+        tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
+        tube_g_in_axes2_x = tube_acc_3_t_3*tube_e_1_in_axes2_x + tube_acc_3_t_4*tube_c_2
+        tube_g_in_axes2_y = tube_acc_3_t_4*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
         # (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
         tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*tube_q_3
         tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*tube_q_3
@@ -3457,10 +3480,6 @@ def _run_dynamics(m, X, V):
         tube_d_acc_3_in_axes2_zy = tube_q_3*tube_w_1_t_78
         tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_q_3
         # (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        tube_acc_3_o_t = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
-        tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
-        tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_e_1_in_axes2_x
-        tube_g_in_axes2_y = tube_acc_3_o_t*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
         tube_acc_3_o_in_axes2_x = (
         axis_x_tube_axes2_x*tube_u_1_x + axis_x_tube_axes2_y*tube_u_1_y +
             axis_x_tube_axes2_z*tube_u_1_z - tube_g_in_axes2_x
@@ -3471,32 +3490,43 @@ def _run_dynamics(m, X, V):
         tube_acc_3_o_in_axes2_z = (
         tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_q_3
         )
+        # (tube-f_3) inertia force of link 3 less its weight
+        tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
+        tube_f_3_t_2 = tube_W_2_t_3*tube_h_3_in_spec2_x
+        tube_f_3_t_3 = tube_h_3_in_spec2_z*(tube_W_2_t_2 + tube_f_3_t)
+        tube_f_3_t_4 = tube_h_3_in_spec2_y*(tube_W_2_t + tube_f_3_t)
         # (tube-f_3_o) remainder of: inertia force of link 3 less its weight
-        tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
-        tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
-        tube_f_3_o_t_3 = tube_qd_2*tube_qd_2
         tube_f_3_o_in_axes2_x = (
         tube_acc_3_o_in_axes2_x*tube_link3_mass + tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y -
-            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_x*(tube_f_3_o_t_2 +
-            tube_f_3_o_t_3)
+            tube_f_3_t_2 - tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z
         )
         tube_f_3_o_in_axes2_y = (
-        tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x + tube_acc_3_o_in_axes2_y*tube_link3_mass +
-            tube_h_3_in_spec2_z*(tube_f_3_o_t + tube_f_3_o_t_3) -
+        tube_f_3_t_3 + tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x +
+            tube_acc_3_o_in_axes2_y*tube_link3_mass -
             tube_alpha_1_o_in_axes2_x*tube_h_3_in_spec2_y
         )
         tube_f_3_o_in_axes2_z = (
         tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x + tube_acc_3_o_in_axes2_z*tube_link3_mass -
-            tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_y*(tube_f_3_o_t +
-            tube_f_3_o_t_2)
+            tube_f_3_t_4 - tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z
+        )
+        # (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        tube_mu_2_t = tube_J_group_2_in_axes2_yz*(tube_W_2_t - tube_W_2_t_2)
+        tube_mu_2_t_2 = tube_J_group_2_in_axes2_xz*(tube_f_3_t - tube_W_2_t_2)
+        tube_mu_2_t_3 = tube_J_group_2_in_axes2_xy*(tube_f_3_t - tube_W_2_t)
+        tube_mu_2_t_4 = (
+        tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z
+        )
+        tube_mu_2_t_5 = (
+        tube_g_in_axes2_x*tube_h_2_in_spec2_y - tube_g_in_axes2_z*tube_h_2_in_spec2_x
+        )
+        tube_mu_2_t_6 = (
+        tube_g_in_axes2_x*tube_h_2_in_spec2_z + tube_g_in_axes2_y*tube_h_2_in_spec2_x
         )
         # (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         tube_mu_2_o_in_axes2_x = (
-        tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
+        tube_mu_2_t + tube_mu_2_t_4 + tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
             tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
-            tube_J_group_2_in_axes2_yz*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x +
-            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x -
             tube_B_2_o_in_axes2_zx*tube_J_group_2_in_axes2_xy -
             tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_y -
             tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_z
@@ -3504,20 +3534,18 @@ def _run_dynamics(m, X, V):
         tube_mu_2_o_in_axes2_y = (
         tube_B_2_o_in_axes2_zy*tube_J_group_2_in_axes2_xy +
             tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_y +
-            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y - tube_mu_2_t_2 - tube_mu_2_t_5 -
             tube_B_2_o_in_axes2_xy*tube_J_group_2_in_axes2_yz -
             tube_B_2_o_in_axes2_zx*tube_Sigma_2_in_axes2_xx -
-            tube_J_group_2_in_axes2_xz*(tube_f_3_o_t - tube_f_3_o_t_3) -
-            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x - tube_g_in_axes2_x*tube_h_2_in_spec2_y
+            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x
         )
         tube_mu_2_o_in_axes2_z = (
-        tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx + tube_J_group_2_in_axes2_xy*(tube_f_3_o_t
-            - tube_f_3_o_t_2) + tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
+        tube_mu_2_t_3 + tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
+            tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
             tube_J_group_2_in_axes2_yz*tube_alpha_1_o_in_axes2_y +
             tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
-            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x -
-            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
-            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x
+            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x - tube_mu_2_t_6 -
+            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy
         )
         # (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_dalpha_N_2_in_axes2_zx = (
@@ -4152,39 +4180,15 @@ def _run_dynamics(m, X, V):
             axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + tube_U_y*tube_q_x - tube_U_x*tube_q_y
         )
         # (tube-Hk_a_1) moment of the column's unit force about the platform origin
-        tube_Hk_a_1_x = (
-        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y +
-            axis_y_tube_axes2_z*tube_q_y + axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z -
-            axis_y_tube_axes2_y*tube_q_z
-        )
-        tube_Hk_a_1_y = (
-        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_x*tube_q_z +
-            axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z
-            - axis_y_tube_axes2_z*tube_q_x
-        )
-        tube_Hk_a_1_z = (
-        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_y*tube_q_x +
-            axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z
-            - axis_y_tube_axes2_x*tube_q_y
-        )
+        tube_Hk_a_1_x = tube_mu_c1_x + axis_y_tube_axes2_z*tube_q_y - axis_y_tube_axes2_y*tube_q_z
+        tube_Hk_a_1_y = tube_mu_c1_y + axis_y_tube_axes2_x*tube_q_z - axis_y_tube_axes2_z*tube_q_x
+        tube_Hk_a_1_z = tube_mu_c1_z + axis_y_tube_axes2_y*tube_q_x - axis_y_tube_axes2_x*tube_q_y
         # (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         tube_gamma_c1 = tube_rel_o_in_axes2_y - tube_m1_c1_t*tube_nu_1 - tube_m3_c1_t*tube_nu_3
         # (tube-Hk_a_2) moment of the column's unit force about the platform origin
-        tube_Hk_a_2_x = (
-        axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z +
-            axis_z_tube_axes2_z*tube_q_y - axis_x_tube_axes2_x*tube_mu_c2_t -
-            axis_z_tube_axes2_y*tube_q_z
-        )
-        tube_Hk_a_2_y = (
-        axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_x*tube_q_z +
-            axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_y*tube_mu_c2_t -
-            axis_z_tube_axes2_z*tube_q_x
-        )
-        tube_Hk_a_2_z = (
-        axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_y*tube_q_x +
-            axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_z*tube_mu_c2_t -
-            axis_z_tube_axes2_x*tube_q_y
-        )
+        tube_Hk_a_2_x = tube_mu_c2_x + axis_z_tube_axes2_z*tube_q_y - axis_z_tube_axes2_y*tube_q_z
+        tube_Hk_a_2_y = tube_mu_c2_y + axis_z_tube_axes2_x*tube_q_z - axis_z_tube_axes2_z*tube_q_x
+        tube_Hk_a_2_z = tube_mu_c2_z + axis_z_tube_axes2_y*tube_q_x - axis_z_tube_axes2_x*tube_q_y
         # (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
         tube_gamma_c2 = tube_rel_o_in_axes2_z + tube_m3_c2*tube_nu_3 - tube_m1_c2_t*tube_nu_1
         # (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
@@ -4453,60 +4457,70 @@ def _run_M(m, X):
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-w_2) reciprocal vector 2
-        ups_w_2_in_axes2_y = 1.0/ups_q_3
-        # (ups-w_3) reciprocal vector 3
-        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
-        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
-        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        ups_e_1_in_axes2_x = ups_S_in_turn1_z*ups_w_2_in_axes2_y
         ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_e_1_in_axes2_x
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_d_phi_3_in_axes2_xy = ups_h_3_in_spec2_z*ups_w_2_in_axes2_y
-        ups_d_phi_3_in_axes2_yy = ups_h_3_in_spec2_x*ups_w_2_in_axes2_y
+        ups_d_phi_3_in_axes2_xy = inv_ups_q_3*ups_h_3_in_spec2_z
+        ups_d_phi_3_in_axes2_yy = inv_ups_q_3*ups_h_3_in_spec2_x
         # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_d_c_in_axes2_xz = ups_h_3_in_spec2_y*ups_w_2_in_axes2_y
+        ups_d_c_in_axes2_xz = inv_ups_q_3*ups_h_3_in_spec2_y
         ups_d_c_in_axes2_yy = (
-        -ups_d_phi_3_in_axes2_yy - ups_w_2_in_axes2_y*(ups_h_3_in_spec2_x +
-            ups_J_group_2_in_axes2_zz*ups_w_2_in_axes2_y)
+        -ups_d_phi_3_in_axes2_yy - inv_ups_q_3*(ups_h_3_in_spec2_x +
+            inv_ups_q_3*ups_J_group_2_in_axes2_zz)
         )
         ups_d_c_in_axes2_yz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            ups_J_group_2_in_axes2_yz*ups_w_2_in_axes2_y)
+            inv_ups_q_3*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_q_3*ups_J_group_2_in_axes2_yz)
         )
         ups_d_c_in_axes2_zz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z - ups_d_phi_3_in_axes2_yy -
             inv_ups_root_1*(ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
-            - ups_h_3_in_spec2_z - ups_J_group_2_in_axes2_xy*ups_w_2_in_axes2_y) -
-            ups_root_1*ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_x - ups_J_group_2_in_axes2_yy*ups_w_2_in_axes2_y))
+            - ups_h_3_in_spec2_z - inv_ups_q_3*ups_J_group_2_in_axes2_xy) -
+            ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_x -
+            inv_ups_q_3*ups_J_group_2_in_axes2_yy))
         )
         # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
-        axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z - axis_z_ups_axes2_z*ups_w_3_y
-        axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x - axis_z_ups_axes2_x*ups_w_3_z
-        axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y - axis_z_ups_axes2_y*ups_w_3_x
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
         ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        ups_d_phi_3_in_axes2_xy*ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
             axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
         )
         ups_Q_t_4 = (
-        ups_d_phi_3_in_axes2_xy*ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
             axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
         )
         ups_Q_t_5 = (
         axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-            ups_d_phi_3_in_axes2_xy*ups_w_3_z
+            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
         )
-        ups_Q_t_6 = axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_x
-        ups_Q_t_7 = axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_y
-        ups_Q_t_8 = axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_z
+        ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
+        ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
+        ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
         ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
         ups_Q_xx = -2.0*ups_Q_t_9
         ups_Q_xy = (
@@ -4631,8 +4645,36 @@ def _run_M(m, X):
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_q_3 = 1.0/tube_q_3
         tube_c_2 = inv_tube_q_3*tube_root_1
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        # (tube-q_2) displacement of joint 2
         tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        # (tube-S_dot) velocity of the connection point
+        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
+        axis_y_tube_axes2_x = (
+        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
+            tube_base_frame_xz*tube_c_2
+        )
+        axis_y_tube_axes2_y = (
+        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
+            tube_base_frame_yz*tube_c_2
+        )
+        axis_y_tube_axes2_z = (
+        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
+            tube_base_frame_zz*tube_c_2
+        )
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
+        )
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
+        )
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
+        )
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
         R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
@@ -4668,31 +4710,35 @@ def _run_M(m, X):
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
-        tube_n_m1_in_axes2_z = (
-        tube_e_1_in_axes2_x*(tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1) -
-            tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        tube_n_m1_t_12 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz)
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
         tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_2 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_n_m2_t_2 = (
-        tube_c_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
-            tube_s_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz)
-        )
-        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_2 + tube_e_1_in_axes2_x*tube_n_m2_t
-        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_2 - tube_c_2*tube_n_m2_t
-        tube_n_m2_t_3 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
+        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
@@ -4704,59 +4750,52 @@ def _run_M(m, X):
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
-        tube_n_m3_in_axes2_z = (
-        tube_c_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1) +
-            tube_e_1_in_axes2_x*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        tube_n_m3_t_3 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz)
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_n_m3_t_3 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
-        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
-        # (tube-m1_c3) moment part 1 of constraint wrench 3
+        # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
+        # (tube-m3_c1) moment part 3 of constraint wrench 1
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
+        # (tube-m1_c2) moment part 1 of constraint wrench 2
+        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        # (tube-m3_c2) moment part 3 of constraint wrench 2
+        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3
-        # (tube-n_c1) unit force of the constraint wrench
-        tube_n_c1_t = tube_c_1*tube_e_1_in_axes2_x
-        tube_n_c1_t_2 = tube_e_1_in_axes2_x*tube_s_1
-        tube_n_c1_x = (
-        tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xy*tube_n_c1_t_2 -
-            tube_base_frame_xz*tube_c_2
-        )
-        tube_n_c1_y = (
-        tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yy*tube_n_c1_t_2 -
-            tube_base_frame_yz*tube_c_2
-        )
-        tube_n_c1_z = (
-        tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zy*tube_n_c1_t_2 -
-            tube_base_frame_zz*tube_c_2
-        )
-        # (tube-n_c2) unit force of the constraint wrench
-        tube_n_c2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
-        tube_n_c2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
-        tube_n_c2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
         # (tube-size_c3) size of the moment
         tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
-        # (tube-mu2_c3) moment along direction 2 that goes with it
-        tube_mu2_c3 = 1.0/tube_size_c3
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3
+        # (tube-mu3_c3) moment along direction 3 that goes with it
+        tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-w_1) force part of reciprocal wrench 1
         tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_3
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_3
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
         tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
         tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_3*tube_q_3
-        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
-        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        tube_w_1_t_10 = 1.35*tube_m1_c3*tube_mu2_c3
-        tube_w_1_t_11 = 1.35*tube_mu2_c3
-        tube_w_1_t_12 = 1.35*tube_m3_c3_t*tube_mu2_c3
+        tube_w_1_t_6 = 1.35*tube_m1_c1_t
+        tube_w_1_t_7 = 1.35*tube_m3_c1_t
+        tube_w_1_t_8 = 1.35*tube_m1_c2_t
+        tube_w_1_t_9 = 1.35*tube_m3_c2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
         tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
         inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
         tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
@@ -5241,9 +5280,6 @@ def _run_M(m, X):
         tube_d_alpha_1_t*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_w_2_in_axes2_z
         )
         # (tube-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y
-        axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z
-        axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x
         tube_Q_t = (
         tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y + tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y
             - tube_link3_mass
@@ -5255,230 +5291,252 @@ def _run_M(m, X):
         )
         tube_Q_t_4 = 0.5*tube_Q_t_3
         tube_Q_t_5 = (
-        tube_Q_t_2*tube_n_c1_x + tube_d_G_in_axes2_yz*tube_n_c2_x -
+        axis_y_tube_axes2_x*tube_Q_t_2 + axis_z_tube_axes2_x*tube_d_G_in_axes2_yz -
             axis_x_tube_axes2_x*tube_d_c_in_axes2_xy
         )
         tube_Q_t_6 = (
-        tube_Q_t_2*tube_n_c1_y + tube_d_G_in_axes2_yz*tube_n_c2_y -
+        axis_y_tube_axes2_y*tube_Q_t_2 + axis_z_tube_axes2_y*tube_d_G_in_axes2_yz -
             axis_x_tube_axes2_y*tube_d_c_in_axes2_xy
         )
         tube_Q_t_7 = (
-        tube_Q_t_2*tube_n_c1_z + tube_d_G_in_axes2_yz*tube_n_c2_z -
+        axis_y_tube_axes2_z*tube_Q_t_2 + axis_z_tube_axes2_z*tube_d_G_in_axes2_yz -
             axis_x_tube_axes2_z*tube_d_c_in_axes2_xy
         )
-        tube_Q_t_8 = tube_Q_t_4*tube_n_c2_x - axis_x_tube_axes2_x*tube_d_c_in_axes2_xz
-        tube_Q_t_9 = tube_Q_t_4*tube_n_c2_y - axis_x_tube_axes2_y*tube_d_c_in_axes2_xz
-        tube_Q_t_10 = tube_Q_t_4*tube_n_c2_z - axis_x_tube_axes2_z*tube_d_c_in_axes2_xz
-        tube_Q_t_11 = tube_Q_t_5*tube_n_c1_x + tube_Q_t_8*tube_n_c2_x
+        tube_Q_t_8 = axis_z_tube_axes2_x*tube_Q_t_4 - axis_x_tube_axes2_x*tube_d_c_in_axes2_xz
+        tube_Q_t_9 = axis_z_tube_axes2_y*tube_Q_t_4 - axis_x_tube_axes2_y*tube_d_c_in_axes2_xz
+        tube_Q_t_10 = axis_z_tube_axes2_z*tube_Q_t_4 - axis_x_tube_axes2_z*tube_d_c_in_axes2_xz
+        tube_Q_t_11 = axis_y_tube_axes2_x*tube_Q_t_5 + axis_z_tube_axes2_x*tube_Q_t_8
         tube_Q_xx = 2.0*tube_Q_t_11 + tube_link3_mass
         tube_Q_xy = (
-        tube_Q_t_5*tube_n_c1_y + tube_Q_t_6*tube_n_c1_x + tube_Q_t_8*tube_n_c2_y +
-            tube_Q_t_9*tube_n_c2_x
+        axis_y_tube_axes2_x*tube_Q_t_6 + axis_y_tube_axes2_y*tube_Q_t_5 +
+            axis_z_tube_axes2_x*tube_Q_t_9 + axis_z_tube_axes2_y*tube_Q_t_8
         )
         tube_Q_xz = (
-        tube_Q_t_10*tube_n_c2_x + tube_Q_t_5*tube_n_c1_z + tube_Q_t_7*tube_n_c1_x +
-            tube_Q_t_8*tube_n_c2_z
+        axis_y_tube_axes2_x*tube_Q_t_7 + axis_y_tube_axes2_z*tube_Q_t_5 +
+            axis_z_tube_axes2_x*tube_Q_t_10 + axis_z_tube_axes2_z*tube_Q_t_8
         )
-        tube_Q_t_12 = tube_Q_t_6*tube_n_c1_y + tube_Q_t_9*tube_n_c2_y
+        tube_Q_t_12 = axis_y_tube_axes2_y*tube_Q_t_6 + axis_z_tube_axes2_y*tube_Q_t_9
         tube_Q_yy = 2.0*tube_Q_t_12 + tube_link3_mass
         tube_Q_yz = (
-        tube_Q_t_10*tube_n_c2_y + tube_Q_t_6*tube_n_c1_z + tube_Q_t_7*tube_n_c1_y +
-            tube_Q_t_9*tube_n_c2_z
+        axis_y_tube_axes2_y*tube_Q_t_7 + axis_y_tube_axes2_z*tube_Q_t_6 +
+            axis_z_tube_axes2_y*tube_Q_t_10 + axis_z_tube_axes2_z*tube_Q_t_9
         )
-        tube_Q_t_13 = tube_Q_t_10*tube_n_c2_z + tube_Q_t_7*tube_n_c1_z
+        tube_Q_t_13 = axis_y_tube_axes2_z*tube_Q_t_7 + axis_z_tube_axes2_z*tube_Q_t_10
         tube_Q_zz = 2.0*tube_Q_t_13 + tube_link3_mass
         # (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
         tube_dalpha_c_m_zz = (
         axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
-            tube_dalpha_G_m_in_axes2_yx*tube_n_c1_z - tube_dalpha_G_m_in_axes2_zx*tube_n_c2_z) +
-            tube_n_c1_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
-            tube_dalpha_G_m_in_axes2_yy*tube_n_c1_z - tube_dalpha_G_m_in_axes2_zy*tube_n_c2_z) +
-            tube_n_c2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
-            tube_dalpha_G_m_in_axes2_yz*tube_n_c1_z - tube_dalpha_G_m_in_axes2_zz*tube_n_c2_z)
+            axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yx -
+            axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zx) +
+            axis_y_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
+            axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yy -
+            axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zy) +
+            axis_z_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
+            axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yz -
+            axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zz)
         )
         # (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
         tube_d_c_m_t = (
-        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx - tube_d_G_m_in_axes2_yx*tube_n_c1_x -
-            tube_d_G_m_in_axes2_zx*tube_n_c2_x
+        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx - axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yx -
+            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zx
         )
         tube_d_c_m_t_2 = (
-        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx - tube_d_G_m_in_axes2_yx*tube_n_c1_y -
-            tube_d_G_m_in_axes2_zx*tube_n_c2_y
+        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx - axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yx -
+            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zx
         )
         tube_d_c_m_t_3 = (
-        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy - tube_d_G_m_in_axes2_yy*tube_n_c1_x -
-            tube_d_G_m_in_axes2_zy*tube_n_c2_x
+        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy - axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yy -
+            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zy
         )
         tube_d_c_m_t_4 = (
-        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy - tube_d_G_m_in_axes2_yy*tube_n_c1_y -
-            tube_d_G_m_in_axes2_zy*tube_n_c2_y
+        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy - axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yy -
+            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zy
         )
         tube_d_c_m_t_5 = (
-        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz - tube_d_G_m_in_axes2_yz*tube_n_c1_x -
-            tube_d_G_m_in_axes2_zz*tube_n_c2_x
+        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz - axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yz -
+            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zz
         )
         tube_d_c_m_t_6 = (
-        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz - tube_d_G_m_in_axes2_yz*tube_n_c1_y -
-            tube_d_G_m_in_axes2_zz*tube_n_c2_y
+        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz - axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yz -
+            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zz
         )
         tube_d_c_m_xx = (
-        axis_x_tube_axes2_x*tube_d_c_m_t + tube_d_c_m_t_3*tube_n_c1_x + tube_d_c_m_t_5*tube_n_c2_x
+        axis_x_tube_axes2_x*tube_d_c_m_t + axis_y_tube_axes2_x*tube_d_c_m_t_3 +
+            axis_z_tube_axes2_x*tube_d_c_m_t_5
         )
         tube_d_c_m_xy = (
-        axis_x_tube_axes2_y*tube_d_c_m_t + tube_d_c_m_t_3*tube_n_c1_y + tube_d_c_m_t_5*tube_n_c2_y
+        axis_x_tube_axes2_y*tube_d_c_m_t + axis_y_tube_axes2_y*tube_d_c_m_t_3 +
+            axis_z_tube_axes2_y*tube_d_c_m_t_5
         )
         tube_d_c_m_xz = (
-        axis_x_tube_axes2_z*tube_d_c_m_t + tube_d_c_m_t_3*tube_n_c1_z + tube_d_c_m_t_5*tube_n_c2_z
+        axis_x_tube_axes2_z*tube_d_c_m_t + axis_y_tube_axes2_z*tube_d_c_m_t_3 +
+            axis_z_tube_axes2_z*tube_d_c_m_t_5
         )
         tube_d_c_m_yx = (
-        axis_x_tube_axes2_x*tube_d_c_m_t_2 + tube_d_c_m_t_4*tube_n_c1_x +
-            tube_d_c_m_t_6*tube_n_c2_x
+        axis_x_tube_axes2_x*tube_d_c_m_t_2 + axis_y_tube_axes2_x*tube_d_c_m_t_4 +
+            axis_z_tube_axes2_x*tube_d_c_m_t_6
         )
         # (M_ta) coupling block of M
         tube_M_ta_t = (
-        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx - tube_dalpha_G_in_axes2_yx*tube_n_c1_x -
-            tube_dalpha_G_in_axes2_zx*tube_n_c2_x
+        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
+            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yx -
+            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zx
         )
         tube_M_ta_t_2 = (
-        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx - tube_dalpha_G_in_axes2_yx*tube_n_c1_y -
-            tube_dalpha_G_in_axes2_zx*tube_n_c2_y
+        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
+            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yx -
+            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zx
         )
         tube_M_ta_t_3 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx - tube_dalpha_G_in_axes2_yx*tube_n_c1_z -
-            tube_dalpha_G_in_axes2_zx*tube_n_c2_z
+        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
+            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yx -
+            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zx
         )
         tube_M_ta_t_4 = (
-        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy - tube_dalpha_G_in_axes2_yy*tube_n_c1_x -
-            tube_dalpha_G_in_axes2_zy*tube_n_c2_x
+        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
+            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yy -
+            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zy
         )
         tube_M_ta_t_5 = (
-        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy - tube_dalpha_G_in_axes2_yy*tube_n_c1_y -
-            tube_dalpha_G_in_axes2_zy*tube_n_c2_y
+        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
+            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yy -
+            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zy
         )
         tube_M_ta_t_6 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy - tube_dalpha_G_in_axes2_yy*tube_n_c1_z -
-            tube_dalpha_G_in_axes2_zy*tube_n_c2_z
+        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
+            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yy -
+            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zy
         )
         tube_M_ta_t_7 = (
-        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz - tube_dalpha_G_in_axes2_yz*tube_n_c1_x -
-            tube_dalpha_G_in_axes2_zz*tube_n_c2_x
+        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
+            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yz -
+            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zz
         )
         tube_M_ta_t_8 = (
-        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz - tube_dalpha_G_in_axes2_yz*tube_n_c1_y -
-            tube_dalpha_G_in_axes2_zz*tube_n_c2_y
+        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
+            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yz -
+            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zz
         )
         tube_M_ta_t_9 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz - tube_dalpha_G_in_axes2_yz*tube_n_c1_z -
-            tube_dalpha_G_in_axes2_zz*tube_n_c2_z
+        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
+            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yz -
+            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zz
         )
         tube_M_ta_t_10 = tube_Q_xy*tube_q_z
         tube_M_ta_t_11 = tube_Q_xz*tube_q_y
         tube_M_ta_t_12 = tube_Q_yz*tube_q_x
         tube_M_ta_t_13 = (
         tube_M_ta_t_11 - tube_M_ta_t_10 - axis_x_tube_axes2_x*tube_M_ta_t -
-            tube_M_ta_t_4*tube_n_c1_x - tube_M_ta_t_7*tube_n_c2_x
+            axis_y_tube_axes2_x*tube_M_ta_t_4 - axis_z_tube_axes2_x*tube_M_ta_t_7
         )
         tube_M_ta_t_14 = (
-        tube_Q_xx*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t - tube_M_ta_t_4*tube_n_c1_y -
-            tube_M_ta_t_7*tube_n_c2_y - tube_Q_xz*tube_q_x
+        tube_Q_xx*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t - axis_y_tube_axes2_y*tube_M_ta_t_4 -
+            axis_z_tube_axes2_y*tube_M_ta_t_7 - tube_Q_xz*tube_q_x
         )
         tube_M_ta_t_15 = (
-        tube_Q_xy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t - tube_M_ta_t_4*tube_n_c1_z -
-            tube_M_ta_t_7*tube_n_c2_z - tube_Q_xx*tube_q_y
+        tube_Q_xy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t - axis_y_tube_axes2_z*tube_M_ta_t_4 -
+            axis_z_tube_axes2_z*tube_M_ta_t_7 - tube_Q_xx*tube_q_y
         )
         tube_M_ta_t_16 = (
-        tube_Q_yz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 - tube_M_ta_t_5*tube_n_c1_x -
-            tube_M_ta_t_8*tube_n_c2_x - tube_Q_yy*tube_q_z
+        tube_Q_yz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 - axis_y_tube_axes2_x*tube_M_ta_t_5
+            - axis_z_tube_axes2_x*tube_M_ta_t_8 - tube_Q_yy*tube_q_z
         )
         tube_M_ta_t_17 = (
         tube_M_ta_t_10 - tube_M_ta_t_12 - axis_x_tube_axes2_y*tube_M_ta_t_2 -
-            tube_M_ta_t_5*tube_n_c1_y - tube_M_ta_t_8*tube_n_c2_y
+            axis_y_tube_axes2_y*tube_M_ta_t_5 - axis_z_tube_axes2_y*tube_M_ta_t_8
         )
         tube_M_ta_t_18 = (
-        tube_Q_yy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 - tube_M_ta_t_5*tube_n_c1_z -
-            tube_M_ta_t_8*tube_n_c2_z - tube_Q_xy*tube_q_y
+        tube_Q_yy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 - axis_y_tube_axes2_z*tube_M_ta_t_5
+            - axis_z_tube_axes2_z*tube_M_ta_t_8 - tube_Q_xy*tube_q_y
         )
         tube_M_ta_t_19 = (
-        tube_Q_zz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 - tube_M_ta_t_6*tube_n_c1_x -
-            tube_M_ta_t_9*tube_n_c2_x - tube_Q_yz*tube_q_z
+        tube_Q_zz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 - axis_y_tube_axes2_x*tube_M_ta_t_6
+            - axis_z_tube_axes2_x*tube_M_ta_t_9 - tube_Q_yz*tube_q_z
         )
         tube_M_ta_t_20 = (
-        tube_Q_xz*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 - tube_M_ta_t_6*tube_n_c1_y -
-            tube_M_ta_t_9*tube_n_c2_y - tube_Q_zz*tube_q_x
+        tube_Q_xz*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 - axis_y_tube_axes2_y*tube_M_ta_t_6
+            - axis_z_tube_axes2_y*tube_M_ta_t_9 - tube_Q_zz*tube_q_x
         )
         tube_M_ta_t_21 = (
         tube_M_ta_t_12 - tube_M_ta_t_11 - axis_x_tube_axes2_z*tube_M_ta_t_3 -
-            tube_M_ta_t_6*tube_n_c1_z - tube_M_ta_t_9*tube_n_c2_z
+            axis_y_tube_axes2_z*tube_M_ta_t_6 - axis_z_tube_axes2_z*tube_M_ta_t_9
         )
         # (M_aa) rotational block of M
         tube_M_aa_t = (
-        -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx - tube_dalpha_G_m_in_axes2_yx*tube_n_c1_x
-            - tube_dalpha_G_m_in_axes2_zx*tube_n_c2_x
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
+            axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yx -
+            axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zx
         )
         tube_M_aa_t_2 = (
-        -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx - tube_dalpha_G_m_in_axes2_yx*tube_n_c1_y
-            - tube_dalpha_G_m_in_axes2_zx*tube_n_c2_y
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
+            axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yx -
+            axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zx
         )
         tube_M_aa_t_3 = (
-        -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy - tube_dalpha_G_m_in_axes2_yy*tube_n_c1_x
-            - tube_dalpha_G_m_in_axes2_zy*tube_n_c2_x
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
+            axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yy -
+            axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zy
         )
         tube_M_aa_t_4 = (
-        -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy - tube_dalpha_G_m_in_axes2_yy*tube_n_c1_y
-            - tube_dalpha_G_m_in_axes2_zy*tube_n_c2_y
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
+            axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yy -
+            axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zy
         )
         tube_M_aa_t_5 = (
-        -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz - tube_dalpha_G_m_in_axes2_yz*tube_n_c1_x
-            - tube_dalpha_G_m_in_axes2_zz*tube_n_c2_x
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
+            axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yz -
+            axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zz
         )
         tube_M_aa_t_6 = (
-        -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz - tube_dalpha_G_m_in_axes2_yz*tube_n_c1_y
-            - tube_dalpha_G_m_in_axes2_zz*tube_n_c2_y
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
+            axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yz -
+            axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zz
         )
         tube_M_aa_t_7 = (
-        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx - tube_d_G_m_in_axes2_yx*tube_n_c1_z -
-            tube_d_G_m_in_axes2_zx*tube_n_c2_z
+        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx - axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yx -
+            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zx
         )
         tube_M_aa_t_8 = (
-        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy - tube_d_G_m_in_axes2_yy*tube_n_c1_z -
-            tube_d_G_m_in_axes2_zy*tube_n_c2_z
+        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy - axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yy -
+            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zy
         )
         tube_M_aa_t_9 = (
-        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz - tube_d_G_m_in_axes2_yz*tube_n_c1_z -
-            tube_d_G_m_in_axes2_zz*tube_n_c2_z
+        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz - axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yz -
+            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zz
         )
         tube_M_aa_t_10 = (
         tube_M_ta_t_19*tube_q_y + tube_d_c_m_xy*tube_q_z - axis_x_tube_axes2_x*tube_M_aa_t -
-            tube_M_aa_t_3*tube_n_c1_x - tube_M_aa_t_5*tube_n_c2_x - tube_M_ta_t_16*tube_q_z -
-            tube_d_c_m_xz*tube_q_y
+            axis_y_tube_axes2_x*tube_M_aa_t_3 - axis_z_tube_axes2_x*tube_M_aa_t_5 -
+            tube_M_ta_t_16*tube_q_z - tube_d_c_m_xz*tube_q_y
         )
         tube_M_aa_t_11 = (
         tube_M_ta_t_20*tube_q_y + tube_d_c_m_xz*tube_q_x - axis_x_tube_axes2_y*tube_M_aa_t -
-            tube_M_aa_t_3*tube_n_c1_y - tube_M_aa_t_5*tube_n_c2_y - tube_M_ta_t_17*tube_q_z -
-            tube_d_c_m_xx*tube_q_z
+            axis_y_tube_axes2_y*tube_M_aa_t_3 - axis_z_tube_axes2_y*tube_M_aa_t_5 -
+            tube_M_ta_t_17*tube_q_z - tube_d_c_m_xx*tube_q_z
         )
         tube_M_aa_t_12 = (
         tube_M_ta_t_21*tube_q_y + tube_d_c_m_xx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t -
-            tube_M_aa_t_3*tube_n_c1_z - tube_M_aa_t_5*tube_n_c2_z - tube_M_ta_t_18*tube_q_z -
-            tube_d_c_m_xy*tube_q_x
+            axis_y_tube_axes2_z*tube_M_aa_t_3 - axis_z_tube_axes2_z*tube_M_aa_t_5 -
+            tube_M_ta_t_18*tube_q_z - tube_d_c_m_xy*tube_q_x
         )
         tube_M_aa_t_13 = (
         tube_M_ta_t_14*tube_q_z + tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 +
-            tube_d_c_m_t_4*tube_n_c1_z + tube_d_c_m_t_6*tube_n_c2_z) -
-            axis_x_tube_axes2_y*tube_M_aa_t_2 - tube_M_aa_t_4*tube_n_c1_y -
-            tube_M_aa_t_6*tube_n_c2_y - tube_M_ta_t_20*tube_q_x - tube_d_c_m_yx*tube_q_z
+            axis_y_tube_axes2_z*tube_d_c_m_t_4 + axis_z_tube_axes2_z*tube_d_c_m_t_6) -
+            axis_x_tube_axes2_y*tube_M_aa_t_2 - axis_y_tube_axes2_y*tube_M_aa_t_4 -
+            axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_M_ta_t_20*tube_q_x - tube_d_c_m_yx*tube_q_z
         )
         tube_M_aa_t_14 = (
         tube_M_ta_t_15*tube_q_z + tube_d_c_m_yx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t_2 -
-            tube_M_aa_t_4*tube_n_c1_z - tube_M_aa_t_6*tube_n_c2_z - tube_M_ta_t_21*tube_q_x -
-            tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 + tube_d_c_m_t_4*tube_n_c1_y +
-            tube_d_c_m_t_6*tube_n_c2_y)
+            axis_y_tube_axes2_z*tube_M_aa_t_4 - axis_z_tube_axes2_z*tube_M_aa_t_6 -
+            tube_M_ta_t_21*tube_q_x - tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 +
+            axis_y_tube_axes2_y*tube_d_c_m_t_4 + axis_z_tube_axes2_y*tube_d_c_m_t_6)
         )
         tube_M_aa_t_15 = (
         tube_M_ta_t_18*tube_q_x + tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 +
-            tube_M_aa_t_8*tube_n_c1_x + tube_M_aa_t_9*tube_n_c2_x) - tube_dalpha_c_m_zz -
-            tube_M_ta_t_15*tube_q_y - tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 +
-            tube_M_aa_t_8*tube_n_c1_y + tube_M_aa_t_9*tube_n_c2_y)
+            axis_y_tube_axes2_x*tube_M_aa_t_8 + axis_z_tube_axes2_x*tube_M_aa_t_9) -
+            tube_dalpha_c_m_zz - tube_M_ta_t_15*tube_q_y -
+            tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + axis_y_tube_axes2_y*tube_M_aa_t_8 +
+            axis_z_tube_axes2_y*tube_M_aa_t_9)
         )
         ok = (
         ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
@@ -5578,14 +5636,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1246 mul, 901 add, 17 div, 16 sqrt, 0 trig
+# Z: 1255 mul, 895 add, 17 div, 16 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -5641,6 +5699,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -5649,39 +5723,12 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_ups_x, Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -5690,9 +5737,10 @@ def _run_Z(m, X, V):
             ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
             ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
             ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
+            ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -5730,6 +5778,8 @@ def _run_Z(m, X, V):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
@@ -5767,17 +5817,26 @@ def _run_Z(m, X, V):
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
         ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
         ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-u_1) centripetal acceleration of the connection point
         ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        ups_u_1_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
+        )
+        ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x
+        ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y
+        ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z
+        ups_u_1_in_axes2_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3
         ups_u_1_in_axes2_z = (
         axis_z_ups_axes2_x*ups_u_1_x + axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z
         )
@@ -5788,6 +5847,8 @@ def _run_Z(m, X, V):
         ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1_o) remainder of: acceleration of joint 1
         ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
         # (ups-alpha_1_o) remainder of: angular acceleration of link 1
         ups_alpha_1_o_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1_o
         ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o
@@ -5795,71 +5856,70 @@ def _run_Z(m, X, V):
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
-        ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x
-        ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y
-        ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z
-        ups_B_2_o_in_axes2_yx = (
-        inv_ups_q_3*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
-        )
+        ups_B_2_o_in_axes2_yx = inv_ups_q_3*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_qdd_2_t)
         ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
-        # (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        ups_acc_3_o_t = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
         ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_e_1_in_axes2_x
-        ups_g_in_axes2_y = ups_acc_3_o_t*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
-        ups_acc_3_o_in_axes2_x = (
-        axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
-            - ups_g_in_axes2_x
-        )
-        ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_g_in_axes2_y
-        ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        # (ups-phi_3) inertia force of link 3 from its turning about its reference point
+        ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
-        ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
-        ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
         ups_phi_3_o_in_axes2_x = (
-        ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
-            ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        ups_phi_3_t + ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        )
+        # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_t_2 = ups_J_group_2_in_axes2_yz*(ups_W_2_t - ups_W_2_t_2)
+        ups_mu_2_t_3 = ups_J_group_2_in_axes2_xz*(ups_mu_2_t - ups_W_2_t_2)
+        ups_mu_2_t_4 = ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_W_2_t)
+        ups_mu_2_t_5 = (
+        ups_g_in_axes2_z*ups_h_group_2_in_axes2_y - ups_g_in_axes2_y*ups_h_group_2_in_axes2_z
+        )
+        ups_mu_2_t_6 = (
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_z - ups_g_in_axes2_z*ups_h_group_2_in_axes2_x
+        )
+        ups_mu_2_t_7 = (
+        ups_g_in_axes2_y*ups_h_group_2_in_axes2_x - ups_g_in_axes2_x*ups_h_group_2_in_axes2_y
         )
         # (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
         ups_mu_2_o_in_axes2_x = (
-        ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+        ups_mu_2_t_2 + ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
             ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
-            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x - ups_mu_2_t_5 -
             ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z
+            ups_h_3_in_spec2_y*ups_u_1_in_axes2_y - ups_h_3_in_spec2_z*ups_u_1_in_axes2_z
         )
         ups_mu_2_o_in_axes2_y = (
         ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
             ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_h_3_in_spec2_y*ups_u_1_in_axes2_x - ups_mu_2_t_3 - ups_mu_2_t_6 -
             ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_h_3_in_spec2_x*ups_u_1_in_axes2_z
         )
         ups_mu_2_o_in_axes2_z = (
-        ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t -
-            ups_phi_3_o_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+        ups_mu_2_t_4 + ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
             ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
-            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
-            - ups_g_in_axes2_y*ups_h_2_in_spec2_x
+            ups_h_3_in_spec2_x*ups_u_1_in_axes2_y + ups_h_3_in_spec2_z*ups_u_1_in_axes2_x -
+            ups_mu_2_t_7 - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy
         )
+        # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_t = ups_h_3_in_spec2_z*(ups_W_2_t_2 + ups_mu_2_t)
+        ups_c_t_2 = ups_h_3_in_spec2_y*(ups_W_2_t + ups_mu_2_t)
         # (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
-        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
-            ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
-            ups_phi_3_o_t_2)
+        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - ups_c_t - inv_ups_q_3*ups_mu_2_o_in_axes2_z
+            - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x
         )
         ups_c_o_in_axes2_z = (
-        inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x)
-            + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
-            ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
+        ups_c_t_2 + inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y -
+            ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-U) velocity and gravity terms of the leg force
         ups_U_x = (
@@ -5945,8 +6005,9 @@ def _run_Z(m, X, V):
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_q_3 = 1.0/tube_q_3
         tube_c_2 = inv_tube_q_3*tube_root_1
-        # (tube-S_dot) velocity of the connection point
+        # (tube-q_2) displacement of joint 2
         tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        # (tube-S_dot) velocity of the connection point
         axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
         axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
         axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
@@ -6080,28 +6141,39 @@ def _run_Z(m, X, V):
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
-        # (tube-m1_c3) moment part 1 of constraint wrench 3
+        # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
+        # (tube-m3_c1) moment part 3 of constraint wrench 1
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
+        # (tube-m1_c2) moment part 1 of constraint wrench 2
+        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        # (tube-m3_c2) moment part 3 of constraint wrench 2
+        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
         tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
         tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
         # (tube-size_c3) size of the moment
         tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
-        # (tube-mu2_c3) moment along direction 2 that goes with it
-        tube_mu2_c3 = 1.0/tube_size_c3
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3
+        # (tube-mu3_c3) moment along direction 3 that goes with it
+        tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-w_1) force part of reciprocal wrench 1
         tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
         tube_w_1_t_2 = 1.35*tube_n_m2_t_5
         tube_w_1_t_3 = 1.35*tube_n_m3_t_5
         tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
         tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
-        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
-        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        tube_w_1_t_10 = 1.35*tube_m1_c3*tube_mu2_c3
-        tube_w_1_t_11 = 1.35*tube_mu2_c3
-        tube_w_1_t_12 = 1.35*tube_m3_c3_t*tube_mu2_c3
+        tube_w_1_t_6 = 1.35*tube_m1_c1_t
+        tube_w_1_t_7 = 1.35*tube_m3_c1_t
+        tube_w_1_t_8 = 1.35*tube_m1_c2_t
+        tube_w_1_t_9 = 1.35*tube_m3_c2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
         tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
         inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
         tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
@@ -6197,6 +6269,15 @@ def _run_Z(m, X, V):
             tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74)
         )
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
+        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
+        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
+        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
         # (tube-eta_1) rate at which the joints turn along moment direction 1
         tube_omega_in_axes2_y = (
         axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
@@ -6219,36 +6300,30 @@ def _run_Z(m, X, V):
         tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-qd_1) rate of joint 1
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
-        tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70
-        tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71
-        tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72
-        tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73
-        tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74
-        tube_qd_1_t_6 = 1.35*tube_eta_1
-        tube_qd_1_t_7 = 1.35*tube_eta_2
-        tube_qd_1_t_8 = 1.35*tube_eta_3
+        tube_qd_1_t = 1.35*tube_eta_1
+        tube_qd_1_t_2 = 1.35*tube_eta_2
+        tube_qd_1_t_3 = 1.35*tube_eta_3
         tube_qd_1 = (
-        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t + tube_S_dot_in_axes2_z*tube_qd_1_t_2
-            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_5*tube_qd_1_t_8 -
-            tube_qd_1_t_4*tube_qd_1_t_7)
+        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
+            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
         )
         # (tube-qd_2) rate of joint 2
         tube_qd_2_t = (
         inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
-            tube_qd_1_t_7*tube_w_1_t_67 + tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
+            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
         )
         tube_qd_2_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
             tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
+            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
         )
         tube_qd_2_t_3 = (
-        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t_6*tube_w_1_t_15 +
-            tube_qd_1_t_8*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
+            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
             inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
             tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
             tube_qd_2_t*tube_w_1_t_25
         )
@@ -6259,6 +6334,9 @@ def _run_Z(m, X, V):
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
         tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
+        tube_W_2_t = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
+        tube_W_2_t_2 = tube_qd_2*tube_qd_2
+        tube_W_2_t_3 = tube_W_2_t + tube_W_2_t_2
         tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
         # (tube-u_1) centripetal acceleration of the connection point
         tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
@@ -6346,9 +6424,9 @@ def _run_Z(m, X, V):
         tube_qdd_1_o_t_2 = 1.35*tube_nu_2
         tube_qdd_1_o_t_3 = 1.35*tube_nu_3
         tube_qdd_1_o = (
-        inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_o_in_axes2_y + tube_qd_1_t_2*tube_rel_o_in_axes2_z
-            + tube_qd_1_t_3*tube_qdd_1_o_t + tube_qd_1_t_5*tube_qdd_1_o_t_3 -
-            tube_qd_1_t_4*tube_qdd_1_o_t_2)
+        inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t + tube_m3_w_1_t*tube_qdd_1_o_t_3 +
+            tube_rel_o_in_axes2_y*tube_w_1_t_76 + tube_rel_o_in_axes2_z*tube_w_1_t_77 -
+            tube_m2_w_1_t*tube_qdd_1_o_t_2)
         )
         # (tube-qdd_2_o) remainder of: acceleration of joint 2
         tube_qdd_2_o_t = (
@@ -6382,11 +6460,12 @@ def _run_Z(m, X, V):
         tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o
         tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y
         tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x
-        # (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        tube_acc_3_o_t = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
+        # (tube-acc_3) acceleration of the reference point of link 3, less gravity
+        tube_acc_3_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
         tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
-        tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_e_1_in_axes2_x
-        tube_g_in_axes2_y = tube_acc_3_o_t*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
+        tube_g_in_axes2_x = tube_acc_3_t_3*tube_e_1_in_axes2_x + tube_acc_3_t_4*tube_c_2
+        tube_g_in_axes2_y = tube_acc_3_t_4*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
+        # (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         tube_acc_3_o_in_axes2_x = (
         axis_x_tube_axes2_x*tube_u_1_x + axis_x_tube_axes2_y*tube_u_1_y +
             axis_x_tube_axes2_z*tube_u_1_z - tube_g_in_axes2_x
@@ -6397,32 +6476,43 @@ def _run_Z(m, X, V):
         tube_acc_3_o_in_axes2_z = (
         tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_q_3
         )
+        # (tube-f_3) inertia force of link 3 less its weight
+        tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
+        tube_f_3_t_2 = tube_W_2_t_3*tube_h_3_in_spec2_x
+        tube_f_3_t_3 = tube_h_3_in_spec2_z*(tube_W_2_t_2 + tube_f_3_t)
+        tube_f_3_t_4 = tube_h_3_in_spec2_y*(tube_W_2_t + tube_f_3_t)
         # (tube-f_3_o) remainder of: inertia force of link 3 less its weight
-        tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
-        tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
-        tube_f_3_o_t_3 = tube_qd_2*tube_qd_2
         tube_f_3_o_in_axes2_x = (
         tube_acc_3_o_in_axes2_x*tube_link3_mass + tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y -
-            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_x*(tube_f_3_o_t_2 +
-            tube_f_3_o_t_3)
+            tube_f_3_t_2 - tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z
         )
         tube_f_3_o_in_axes2_y = (
-        tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x + tube_acc_3_o_in_axes2_y*tube_link3_mass +
-            tube_h_3_in_spec2_z*(tube_f_3_o_t + tube_f_3_o_t_3) -
+        tube_f_3_t_3 + tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x +
+            tube_acc_3_o_in_axes2_y*tube_link3_mass -
             tube_alpha_1_o_in_axes2_x*tube_h_3_in_spec2_y
         )
         tube_f_3_o_in_axes2_z = (
         tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x + tube_acc_3_o_in_axes2_z*tube_link3_mass -
-            tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_y*(tube_f_3_o_t +
-            tube_f_3_o_t_2)
+            tube_f_3_t_4 - tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z
+        )
+        # (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        tube_mu_2_t = tube_J_group_2_in_axes2_yz*(tube_W_2_t - tube_W_2_t_2)
+        tube_mu_2_t_2 = tube_J_group_2_in_axes2_xz*(tube_f_3_t - tube_W_2_t_2)
+        tube_mu_2_t_3 = tube_J_group_2_in_axes2_xy*(tube_f_3_t - tube_W_2_t)
+        tube_mu_2_t_4 = (
+        tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z
+        )
+        tube_mu_2_t_5 = (
+        tube_g_in_axes2_x*tube_h_2_in_spec2_y - tube_g_in_axes2_z*tube_h_2_in_spec2_x
+        )
+        tube_mu_2_t_6 = (
+        tube_g_in_axes2_x*tube_h_2_in_spec2_z + tube_g_in_axes2_y*tube_h_2_in_spec2_x
         )
         # (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         tube_mu_2_o_in_axes2_x = (
-        tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
+        tube_mu_2_t + tube_mu_2_t_4 + tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
             tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
-            tube_J_group_2_in_axes2_yz*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x +
-            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x -
             tube_B_2_o_in_axes2_zx*tube_J_group_2_in_axes2_xy -
             tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_y -
             tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_z
@@ -6430,20 +6520,18 @@ def _run_Z(m, X, V):
         tube_mu_2_o_in_axes2_y = (
         tube_B_2_o_in_axes2_zy*tube_J_group_2_in_axes2_xy +
             tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_y +
-            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y - tube_mu_2_t_2 - tube_mu_2_t_5 -
             tube_B_2_o_in_axes2_xy*tube_J_group_2_in_axes2_yz -
             tube_B_2_o_in_axes2_zx*tube_Sigma_2_in_axes2_xx -
-            tube_J_group_2_in_axes2_xz*(tube_f_3_o_t - tube_f_3_o_t_3) -
-            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x - tube_g_in_axes2_x*tube_h_2_in_spec2_y
+            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x
         )
         tube_mu_2_o_in_axes2_z = (
-        tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx + tube_J_group_2_in_axes2_xy*(tube_f_3_o_t
-            - tube_f_3_o_t_2) + tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
+        tube_mu_2_t_3 + tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
+            tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
             tube_J_group_2_in_axes2_yz*tube_alpha_1_o_in_axes2_y +
             tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
-            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x -
-            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
-            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x
+            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x - tube_mu_2_t_6 -
+            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy
         )
         # (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y - tube_f_3_o_in_axes2_z*tube_q_3
@@ -6463,24 +6551,24 @@ def _run_Z(m, X, V):
         )
         tube_G_o_in_axes2_y = (
         tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 + tube_G_o_t_3*tube_w_1_t_50 +
-            tube_G_o_t_4*tube_w_1_t_64 - tube_G_o_t_5*tube_qd_1_t
+            tube_G_o_t_4*tube_w_1_t_64 - tube_G_o_t_5*tube_w_1_t_76
         )
         tube_G_o_in_axes2_z = (
-        inv_tube_w_1_t_49*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 - tube_G_o_t_5*tube_qd_1_t_2
+        inv_tube_w_1_t_49*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 - tube_G_o_t_5*tube_w_1_t_77
         )
         # (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_o_t = (
         tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 + tube_G_o_t_3*tube_w_1_t_51 +
-            tube_G_o_t_4*tube_w_1_t_66 - tube_G_o_t_5*tube_qd_1_t_3
+            tube_G_o_t_4*tube_w_1_t_66 - tube_G_o_t_5*tube_m1_w_1_t
         )
         tube_G_m1_o = 1.35*tube_G_m1_o_t
         # (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 + tube_G_o_t_5*tube_qd_1_t_4
+        tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 + tube_G_o_t_5*tube_m2_w_1_t
         tube_G_m2_o = 1.35*tube_G_m2_o_t
         # (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m3_o_t = (
         tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 + tube_G_o_t_3*tube_w_1_t_52 +
-            tube_G_o_t_4*tube_w_1_t_68 - tube_G_o_t_5*tube_qd_1_t_5
+            tube_G_o_t_4*tube_w_1_t_68 - tube_G_o_t_5*tube_m3_w_1_t
         )
         tube_G_m3_o = 1.35*tube_G_m3_o_t
         # (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -6629,24 +6717,24 @@ def _run_H(m, X):
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-w_2) reciprocal vector 2
-        ups_w_2_in_axes2_y = 1.0/ups_q_3
-        # (ups-w_3) reciprocal vector 3
-        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
-        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
-        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_q_3 = 1.0/ups_q_3
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-H_a_3) moment of the column's unit force about the platform origin
-        ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y
-        ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z
-        ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x
+        ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z
+        ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
+        ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
             _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3) > _TOLERANCE * 1.38293)
         )
         # (ups-w_3) reciprocal vector 3
-        out_H[_H_ups[0][leg]] = ups_w_3_x
-        out_H[_H_ups[1][leg]] = ups_w_3_y
-        out_H[_H_ups[2][leg]] = ups_w_3_z
+        out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
+        out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
+        out_H[_H_ups[2][leg]] = axis_x_ups_axes2_z
         # (ups-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
@@ -6743,8 +6831,36 @@ def _run_Hk(m, X):
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_q_3 = 1.0/tube_q_3
         tube_c_2 = inv_tube_q_3*tube_root_1
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        # (tube-q_2) displacement of joint 2
         tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        # (tube-S_dot) velocity of the connection point
+        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
+        axis_y_tube_axes2_x = (
+        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
+            tube_base_frame_xz*tube_c_2
+        )
+        axis_y_tube_axes2_y = (
+        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
+            tube_base_frame_yz*tube_c_2
+        )
+        axis_y_tube_axes2_z = (
+        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
+            tube_base_frame_zz*tube_c_2
+        )
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
+        )
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
+        )
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
+        )
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
         R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
@@ -6780,31 +6896,35 @@ def _run_Hk(m, X):
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
-        tube_n_m1_in_axes2_z = (
-        tube_e_1_in_axes2_x*(tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1) -
-            tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        tube_n_m1_t_12 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz)
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
         tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_2 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_n_m2_t_2 = (
-        tube_c_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
-            tube_s_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz)
-        )
-        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_2 + tube_e_1_in_axes2_x*tube_n_m2_t
-        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_2 - tube_c_2*tube_n_m2_t
-        tube_n_m2_t_3 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
+        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
@@ -6816,21 +6936,22 @@ def _run_Hk(m, X):
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
-        tube_n_m3_in_axes2_z = (
-        tube_c_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1) +
-            tube_e_1_in_axes2_x*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        tube_n_m3_t_3 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz)
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_n_m3_t_3 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
-        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
         # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_q_3
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
         # (tube-m3_c1) moment part 3 of constraint wrench 1
         tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
         # (tube-m1_c2) moment part 1 of constraint wrench 2
@@ -6838,39 +6959,44 @@ def _run_Hk(m, X):
         # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
         # (tube-m1_c3) moment part 1 of constraint wrench 3
-        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3
-        # (tube-n_c1) unit force of the constraint wrench
-        tube_n_c1_t = tube_c_1*tube_e_1_in_axes2_x
-        tube_n_c1_t_2 = tube_e_1_in_axes2_x*tube_s_1
-        tube_n_c1_x = (
-        tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xy*tube_n_c1_t_2 -
-            tube_base_frame_xz*tube_c_2
-        )
-        tube_n_c1_y = (
-        tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yy*tube_n_c1_t_2 -
-            tube_base_frame_yz*tube_c_2
-        )
-        tube_n_c1_z = (
-        tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zy*tube_n_c1_t_2 -
-            tube_base_frame_zz*tube_c_2
-        )
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
         # (tube-mu_c1) the moment that goes with it
         tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
         tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t
         tube_mu_c1_in_axes2_z = (
         -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
         )
-        # (tube-n_c2) unit force of the constraint wrench
-        tube_n_c2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
-        tube_n_c2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
-        tube_n_c2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_mu_c1_x = (
+        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z
+        )
+        tube_mu_c1_y = (
+        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z
+        )
+        tube_mu_c1_z = (
+        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z
+        )
         # (tube-mu_c2) the moment that goes with it
         tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t
         tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2
         tube_mu_c2_in_axes2_z = (
         tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
+        )
+        tube_mu_c2_x = (
+        axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_x*tube_mu_c2_t
+        )
+        tube_mu_c2_y = (
+        axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_y*tube_mu_c2_t
+        )
+        tube_mu_c2_z = (
+        axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_z*tube_mu_c2_t
         )
         # (tube-size_c3) size of the moment
         tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
@@ -6880,9 +7006,6 @@ def _run_Hk(m, X):
         # (tube-mu3_c3) moment along direction 3 that goes with it
         tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-mu_c3) the moment that goes with it
-        axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y
-        axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z
-        axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x
         tube_mu_c3_in_axes2_x = (
         tube_end_p3_in_axes2_z*tube_mu3_c3_t - inv_tube_size_c3*tube_end_p2_in_axes2_y
         )
@@ -6893,60 +7016,42 @@ def _run_Hk(m, X):
         tube_mu1_c3*tube_n_m1_in_axes2_z - tube_mu3_c3_t*tube_n_m3_in_axes2_z
         )
         tube_mu_c3_x = (
-        axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_x +
-            tube_mu_c3_in_axes2_z*tube_n_c2_x
+        axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z
         )
         tube_mu_c3_y = (
-        axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_y +
-            tube_mu_c3_in_axes2_z*tube_n_c2_y
+        axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z
         )
         tube_mu_c3_z = (
-        axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_z +
-            tube_mu_c3_in_axes2_z*tube_n_c2_z
+        axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z
         )
         # (tube-Hk_a_1) moment of the column's unit force about the platform origin
-        tube_Hk_a_1_x = (
-        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*tube_n_c1_x +
-            tube_mu_c1_in_axes2_z*tube_n_c2_x + tube_n_c1_z*tube_q_y - tube_n_c1_y*tube_q_z
-        )
-        tube_Hk_a_1_y = (
-        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*tube_n_c1_y +
-            tube_mu_c1_in_axes2_z*tube_n_c2_y + tube_n_c1_x*tube_q_z - tube_n_c1_z*tube_q_x
-        )
-        tube_Hk_a_1_z = (
-        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*tube_n_c1_z +
-            tube_mu_c1_in_axes2_z*tube_n_c2_z + tube_n_c1_y*tube_q_x - tube_n_c1_x*tube_q_y
-        )
+        tube_Hk_a_1_x = tube_mu_c1_x + axis_y_tube_axes2_z*tube_q_y - axis_y_tube_axes2_y*tube_q_z
+        tube_Hk_a_1_y = tube_mu_c1_y + axis_y_tube_axes2_x*tube_q_z - axis_y_tube_axes2_z*tube_q_x
+        tube_Hk_a_1_z = tube_mu_c1_z + axis_y_tube_axes2_y*tube_q_x - axis_y_tube_axes2_x*tube_q_y
         # (tube-Hk_a_2) moment of the column's unit force about the platform origin
-        tube_Hk_a_2_x = (
-        tube_mu_c2_in_axes2_y*tube_n_c1_x + tube_mu_c2_in_axes2_z*tube_n_c2_x +
-            tube_n_c2_z*tube_q_y - axis_x_tube_axes2_x*tube_mu_c2_t - tube_n_c2_y*tube_q_z
-        )
-        tube_Hk_a_2_y = (
-        tube_mu_c2_in_axes2_y*tube_n_c1_y + tube_mu_c2_in_axes2_z*tube_n_c2_y +
-            tube_n_c2_x*tube_q_z - axis_x_tube_axes2_y*tube_mu_c2_t - tube_n_c2_z*tube_q_x
-        )
-        tube_Hk_a_2_z = (
-        tube_mu_c2_in_axes2_y*tube_n_c1_z + tube_mu_c2_in_axes2_z*tube_n_c2_z +
-            tube_n_c2_y*tube_q_x - axis_x_tube_axes2_z*tube_mu_c2_t - tube_n_c2_x*tube_q_y
-        )
+        tube_Hk_a_2_x = tube_mu_c2_x + axis_z_tube_axes2_z*tube_q_y - axis_z_tube_axes2_y*tube_q_z
+        tube_Hk_a_2_y = tube_mu_c2_y + axis_z_tube_axes2_x*tube_q_z - axis_z_tube_axes2_z*tube_q_x
+        tube_Hk_a_2_z = tube_mu_c2_z + axis_z_tube_axes2_y*tube_q_x - axis_z_tube_axes2_x*tube_q_y
         ok = (
         ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
             _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0)
         )
         # (tube-n_c1) unit force of the constraint wrench
-        out_Hk[_Hk_tube[0][leg]] = tube_n_c1_x
-        out_Hk[_Hk_tube[1][leg]] = tube_n_c1_y
-        out_Hk[_Hk_tube[2][leg]] = tube_n_c1_z
+        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_x
+        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_y
+        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_z
         # (tube-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
         out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
         out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
         # (tube-n_c2) unit force of the constraint wrench
-        out_Hk[_Hk_tube[6][leg]] = tube_n_c2_x
-        out_Hk[_Hk_tube[7][leg]] = tube_n_c2_y
-        out_Hk[_Hk_tube[8][leg]] = tube_n_c2_z
+        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_x
+        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_y
+        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_z
         # (tube-Hk_a_2) moment of the column's unit force about the platform origin
         out_Hk[_Hk_tube[9][leg]] = tube_Hk_a_2_x
         out_Hk[_Hk_tube[10][leg]] = tube_Hk_a_2_y
@@ -7060,8 +7165,9 @@ def _run_constraint_bias(m, X, V):
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_q_3 = 1.0/tube_q_3
         tube_c_2 = inv_tube_q_3*tube_root_1
-        # (tube-S_dot) velocity of the connection point
+        # (tube-q_2) displacement of joint 2
         tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        # (tube-S_dot) velocity of the connection point
         axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
         axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
         axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
@@ -7323,6 +7429,15 @@ def _run_constraint_bias(m, X, V):
             tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74)
         )
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
+        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
+        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
+        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
         # (tube-eta_1) rate at which the joints turn along moment direction 1
         tube_omega_in_axes2_y = (
         axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
@@ -7345,16 +7460,13 @@ def _run_constraint_bias(m, X, V):
         tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-qd_1) rate of joint 1
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
         tube_qd_1_t = 1.35*tube_eta_1
         tube_qd_1_t_2 = 1.35*tube_eta_2
         tube_qd_1_t_3 = 1.35*tube_eta_3
         tube_qd_1 = (
-        inv_tube_w_1_t_75*(inv_tube_w_1_t_75*tube_S_dot_in_axes2_y*tube_w_1_t_70 +
-            inv_tube_w_1_t_75*tube_S_dot_in_axes2_z*tube_w_1_t_71 +
-            inv_tube_w_1_t_75*tube_qd_1_t*tube_w_1_t_72 +
-            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74 -
-            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73)
+        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
+            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
         )
         # (tube-qd_2) rate of joint 2
         tube_qd_2_t = (
@@ -7382,18 +7494,19 @@ def _run_constraint_bias(m, X, V):
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
         tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
+        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
         # (tube-u_1) centripetal acceleration of the connection point
         tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
         tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
         tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = 2.0*tube_S_dot_in_axes2_x
-        tube_bias_in_axes2_y = (
-        tube_bias_t*tube_qd_2 + tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*tube_q_3
-        )
-        tube_bias_in_axes2_z = (
-        2.0*tube_W_2_in_axes2_xz*tube_q_3 - tube_bias_t*tube_omega_1_in_axes2_y
-        )
+        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
+        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
+        tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
+        tube_bias_t_4 = tube_bias_t_3*tube_qd_2
+        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
+        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
+        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
         # (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         tube_rel_o_in_axes2_y = (
         axis_y_tube_axes2_x*tube_u_1_x + axis_y_tube_axes2_y*tube_u_1_y +
@@ -7488,7 +7601,7 @@ def _run_constraint_bias(m, X, V):
     return ok, (out_constraint_bias,)
 
 
-# required: 1392 mul, 1032 add, 17 div, 16 sqrt, 0 trig
+# required: 1373 mul, 1009 add, 17 div, 16 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -7563,9 +7676,22 @@ def _run_required(m, X, V, A):
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -7578,21 +7704,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
-        f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
-        f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
-        f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*m_star - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -7641,9 +7755,10 @@ def _run_required(m, X, V, A):
             ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
             ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
             ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
+            ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -7681,6 +7796,8 @@ def _run_required(m, X, V, A):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
@@ -7718,21 +7835,27 @@ def _run_required(m, X, V, A):
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
         ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
         ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
-        # (ups-a_p) acceleration of the connection point without its centripetal part
-        ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
-        ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
-        ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x
         # (ups-S_ddot) acceleration of the connection point
-        ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
-        ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
-        ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        ups_S_ddot_x = t_ddot_x + B_p_xy*ups_q_y + B_p_xz*ups_q_z - W_p_t_4*ups_q_x
+        ups_S_ddot_y = t_ddot_y + B_p_yx*ups_q_x + B_p_yz*ups_q_z - W_p_t_5*ups_q_y
+        ups_S_ddot_z = t_ddot_z + B_p_zx*ups_q_x + B_p_zy*ups_q_y - W_p_t_6*ups_q_z
+        ups_S_ddot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
+            axis_x_ups_axes2_z*ups_S_ddot_z
+        )
+        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_S_ddot_in_axes2_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3
         ups_S_ddot_in_axes2_z = (
         axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
             axis_z_ups_axes2_z*ups_S_ddot_z
@@ -7744,6 +7867,10 @@ def _run_required(m, X, V, A):
         ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
         ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
+        ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
+        ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
         # (ups-alpha_1) angular acceleration of link 1
         ups_alpha_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1
         ups_alpha_1_in_axes2_y = -ups_c_2*ups_qdd_1
@@ -7751,13 +7878,7 @@ def _run_required(m, X, V, A):
         ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
         ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2) acceleration tensor of link 2
-        ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x
-        ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
-        ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
-        ups_B_2_in_axes2_yx = (
-        inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
+        ups_B_2_in_axes2_xy = ups_W_2_in_axes2_xy - ups_qdd_2
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
@@ -7765,56 +7886,57 @@ def _run_required(m, X, V, A):
         ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
         ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
         ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
-        ups_acc_3_in_axes2_x = (
-        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
-            axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x
-        )
-        ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_g_in_axes2_y
-        ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
-        ups_phi_3_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
-        ups_phi_3_t_2 = ups_qd_2*ups_qd_2
+        ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         ups_phi_3_in_axes2_x = (
-        ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_t -
-            ups_phi_3_t_2) - ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z
+        ups_phi_3_t + ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z
         )
         # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
         ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_t_2 = ups_J_group_2_in_axes2_yz*(ups_W_2_t - ups_W_2_t_2)
+        ups_mu_2_t_3 = ups_J_group_2_in_axes2_xz*(ups_mu_2_t - ups_W_2_t_2)
+        ups_mu_2_t_4 = ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_W_2_t)
+        ups_mu_2_t_5 = (
+        ups_g_in_axes2_z*ups_h_group_2_in_axes2_y - ups_g_in_axes2_y*ups_h_group_2_in_axes2_z
+        )
+        ups_mu_2_t_6 = (
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_z - ups_g_in_axes2_z*ups_h_group_2_in_axes2_x
+        )
+        ups_mu_2_t_7 = (
+        ups_g_in_axes2_y*ups_h_group_2_in_axes2_x - ups_g_in_axes2_x*ups_h_group_2_in_axes2_y
+        )
         ups_mu_2_in_axes2_x = (
-        ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t -
-            ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
-            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+        ups_mu_2_t_2 + ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_xz*ups_qdd_2_t_2 +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x - ups_mu_2_t_5 -
             ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z
+            ups_S_ddot_in_axes2_y*ups_h_3_in_spec2_y - ups_S_ddot_in_axes2_z*ups_h_3_in_spec2_z
         )
         ups_mu_2_in_axes2_y = (
-        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy + ups_S_ddot_in_axes2_x*ups_h_3_in_spec2_y +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y - ups_mu_2_t_3 - ups_mu_2_t_6 -
             ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
-            ups_phi_3_t_2) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
-            ups_g_in_axes2_x*ups_h_2_in_spec2_y
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_S_ddot_in_axes2_z*ups_h_3_in_spec2_x
         )
         ups_mu_2_in_axes2_z = (
-        ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_t -
-            ups_phi_3_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+        ups_mu_2_t_4 + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
             ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
-            ups_g_in_axes2_y*ups_h_2_in_spec2_x
+            ups_S_ddot_in_axes2_x*ups_h_3_in_spec2_z + ups_S_ddot_in_axes2_y*ups_h_3_in_spec2_x +
+            ups_Sigma_2_in_axes2_xx*ups_qdd_2_t_2 - ups_mu_2_t_7 -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_t = ups_h_3_in_spec2_z*(ups_W_2_t_2 + ups_mu_2_t)
+        ups_c_t_2 = ups_h_3_in_spec2_y*(ups_W_2_t + ups_mu_2_t)
         ups_c_in_axes2_y = (
-        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_in_axes2_z -
-            ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
-            ups_phi_3_t_2)
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - ups_c_t - inv_ups_q_3*ups_mu_2_in_axes2_z -
+            ups_h_3_in_spec2_x*ups_qdd_2_t_2
         )
         ups_c_in_axes2_z = (
-        inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-            ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t)
-            - ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
+        ups_c_t_2 + inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y -
+            ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
         )
         ups_c_x = (
         axis_y_ups_axes2_x*ups_c_in_axes2_y + axis_z_ups_axes2_x*ups_c_in_axes2_z -
@@ -7911,2640 +8033,9 @@ def _run_required(m, X, V, A):
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_q_3 = 1.0/tube_q_3
         tube_c_2 = inv_tube_q_3*tube_root_1
-        # (tube-S_dot) velocity of the connection point
-        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
-        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
-        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
-        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
-        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
-        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
-        axis_y_tube_axes2_x = (
-        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
-            tube_base_frame_xz*tube_c_2
-        )
-        axis_y_tube_axes2_y = (
-        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
-            tube_base_frame_yz*tube_c_2
-        )
-        axis_y_tube_axes2_z = (
-        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
-            tube_base_frame_zz*tube_c_2
-        )
-        axis_x_tube_axes2_x = (
-        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
-        )
-        axis_x_tube_axes2_y = (
-        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
-        )
-        axis_x_tube_axes2_z = (
-        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
-        )
-        tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y
-        tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z
-        tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x
-        tube_S_dot_x = t_dot_x + tube_S_dot_t_3
-        tube_S_dot_y = t_dot_y + tube_S_dot_t_4
-        tube_S_dot_z = t_dot_z + tube_S_dot_t_5
-        tube_S_dot_in_axes2_x = (
-        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
-            axis_x_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
-            axis_y_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
-            axis_z_tube_axes2_z*tube_S_dot_z
-        )
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
-        tube_n_m1_t_2 = (
-        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
-        )
-        tube_n_m1_t_3 = (
-        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
-        )
-        tube_n_m1_t_4 = (
-        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
-        )
-        tube_n_m1_t_5 = (
-        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
-        )
-        tube_n_m1_t_6 = (
-        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
-        )
-        tube_n_m1_t_7 = (
-        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
-        )
-        tube_n_m1_t_8 = (
-        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
-        )
-        tube_n_m1_t_9 = (
-        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
-        )
-        tube_n_m1_t_10 = (
-        tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz
-        )
-        tube_n_m1_t_11 = (
-        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz
-        )
-        tube_n_m1_t_12 = (
-        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz
-        )
-        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
-        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
-        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_t = (
-        tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz
-        )
-        tube_n_m2_t_2 = (
-        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz
-        )
-        tube_n_m2_t_3 = (
-        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz
-        )
-        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
-        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
-        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
-        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = (
-        tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz
-        )
-        tube_n_m3_t_2 = (
-        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz
-        )
-        tube_n_m3_t_3 = (
-        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz
-        )
-        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
-        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
-        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
-        # (tube-f_c1) force part of constraint wrench 1
-        tube_f_c1_t = (
-        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
-        )
-        # (tube-m1_c1) moment part 1 of constraint wrench 1
-        inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
-        # (tube-m3_c1) moment part 3 of constraint wrench 1
-        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
-        # (tube-m1_c2) moment part 1 of constraint wrench 2
-        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        # (tube-m3_c2) moment part 3 of constraint wrench 2
-        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        # (tube-m1_c3) moment part 1 of constraint wrench 3
-        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
-        # (tube-mu_c1) the moment that goes with it
-        tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
-        tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t
-        tube_mu_c1_in_axes2_z = (
-        -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
-        )
-        # (tube-mu_c2) the moment that goes with it
-        tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t
-        tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2
-        tube_mu_c2_in_axes2_z = (
-        tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
-        )
-        # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
-        # (tube-mu1_c3) moment along direction 1 that goes with it
-        inv_tube_size_c3 = 1.0/tube_size_c3
-        tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3
-        # (tube-mu3_c3) moment along direction 3 that goes with it
-        tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
-        # (tube-mu_c3) the moment that goes with it
-        tube_mu_c3_in_axes2_x = (
-        tube_end_p3_in_axes2_z*tube_mu3_c3_t - inv_tube_size_c3*tube_end_p2_in_axes2_y
-        )
-        tube_mu_c3_in_axes2_y = (
-        inv_tube_size_c3*tube_n_m2_in_axes2_y - tube_end_p1_in_axes2_z*tube_mu1_c3
-        )
-        tube_mu_c3_in_axes2_z = (
-        tube_mu1_c3*tube_n_m1_in_axes2_z - tube_mu3_c3_t*tube_n_m3_in_axes2_z
-        )
-        tube_mu_c3_x = (
-        axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y +
-            axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z
-        )
-        tube_mu_c3_y = (
-        axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y +
-            axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z
-        )
-        tube_mu_c3_z = (
-        axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y +
-            axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z
-        )
-        # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
-        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
-        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*tube_m1_c1_t
-        tube_w_1_t_7 = 1.35*tube_m3_c1_t
-        tube_w_1_t_8 = 1.35*tube_m1_c2_t
-        tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
-        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
-        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
-        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
-        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
-        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
-        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
-        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
-        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
-        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
-        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
-        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
-        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
-        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
-        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
-        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
-        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
-        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
-        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
-        tube_w_1_t_33 = (
-        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
-            tube_w_1_t_20*tube_w_1_t_20)
-        )
-        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
-        tube_w_1_t_37 = (
-        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
-        )
-        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
-        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
-        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
-        tube_w_1_t_41 = (
-        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
-        )
-        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
-        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
-        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
-        tube_w_1_t_45 = (
-        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
-        )
-        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
-        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
-        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
-        tube_w_1_t_49 = (
-        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
-            tube_w_1_t_40*tube_w_1_t_40)
-        )
-        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
-        tube_w_1_t_53 = (
-        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
-        )
-        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
-        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
-        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
-        tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
-            - tube_w_1_t_47*tube_w_1_t_51
-        )
-        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
-        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
-        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
-        tube_w_1_t_63 = (
-        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
-            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57)
-        )
-        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
-        tube_w_1_t_69 = (
-        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
-            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
-        )
-        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
-        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
-        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
-        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
-        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
-        tube_w_1_t_75 = (
-        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
-            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74)
-        )
-        # (tube-eta_1) rate at which the joints turn along moment direction 1
-        tube_omega_in_axes2_y = (
-        axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
-        )
-        tube_omega_in_axes2_z = (
-        axis_z_tube_axes2_x*omega_x + axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z
-        )
-        tube_eta_1 = (
-        tube_n_m1_in_axes2_z*tube_omega_in_axes2_z - tube_end_p1_in_axes2_z*tube_omega_in_axes2_y
-        )
-        # (tube-eta_2) rate at which the joints turn along moment direction 2
-        tube_omega_in_axes2_x = (
-        axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
-        )
-        tube_eta_2 = (
-        tube_n_m2_in_axes2_y*tube_omega_in_axes2_y - tube_end_p2_in_axes2_y*tube_omega_in_axes2_x
-        )
-        # (tube-eta_3) rate at which the joints turn along moment direction 3
-        tube_eta_3 = (
-        tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
-        )
-        # (tube-qd_1) rate of joint 1
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
-        tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70
-        tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71
-        tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72
-        tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73
-        tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74
-        tube_qd_1_t_6 = 1.35*tube_eta_1
-        tube_qd_1_t_7 = 1.35*tube_eta_2
-        tube_qd_1_t_8 = 1.35*tube_eta_3
-        tube_qd_1 = (
-        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t + tube_S_dot_in_axes2_z*tube_qd_1_t_2
-            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_5*tube_qd_1_t_8 -
-            tube_qd_1_t_4*tube_qd_1_t_7)
-        )
-        # (tube-qd_2) rate of joint 2
-        tube_qd_2_t = (
-        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
-            tube_qd_1_t_7*tube_w_1_t_67 + tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
-        )
-        tube_qd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
-        )
-        tube_qd_2_t_3 = (
-        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t_6*tube_w_1_t_15 +
-            tube_qd_1_t_8*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25
-        )
-        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
-        # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
-        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
-        # (tube-W_2) centripetal tensor of link 2
-        tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
-        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
-        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
-        # (tube-a_p) acceleration of the connection point without its centripetal part
-        tube_a_p_x = t_ddot_x + alpha_y*tube_q_z - alpha_z*tube_q_y
-        tube_a_p_y = t_ddot_y + alpha_z*tube_q_x - alpha_x*tube_q_z
-        tube_a_p_z = t_ddot_z + alpha_x*tube_q_y - alpha_y*tube_q_x
-        # (tube-S_ddot) acceleration of the connection point
-        tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
-        tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
-        tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
-        # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
-        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
-        tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
-        tube_bias_t_4 = tube_bias_t_3*tube_qd_2
-        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
-        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
-        # (tube-rel) acceleration of the connection point left to the joint accelerations
-        tube_rel_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_ddot_x + axis_y_tube_axes2_y*tube_S_ddot_y +
-            axis_y_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_y
-        )
-        tube_rel_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_ddot_x + axis_z_tube_axes2_y*tube_S_ddot_y +
-            axis_z_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_z
-        )
-        # (tube-nd_m1) rate of moment direction 1
-        tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
-        tube_nd_m1_in_axes2_y = (
-        tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
-            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x
-        )
-        tube_nd_m1_in_axes2_z = (
-        tube_end_p1_in_axes2_x*tube_omega_in_axes2_z - tube_end_p1_in_axes2_x*tube_qd_2 -
-            tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
-        )
-        # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
-        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
-        tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
-        tube_nu_1_t_4 = (
-        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
-        )
-        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
-        # (tube-nd_m2) rate of moment direction 2
-        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
-        tube_nd_m2_in_axes2_x = (
-        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
-        )
-        tube_nd_m2_in_axes2_y = (
-        tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y
-        )
-        # (tube-nu_2) bias of the angular acceleration along moment direction 2
-        tube_nu_2_t = (
-        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
-        )
-        tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
-        )
-        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
-        # (tube-nd_m3) rate of moment direction 3
-        tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
-        tube_nd_m3_in_axes2_x = (
-        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
-        )
-        tube_nd_m3_in_axes2_z = (
-        tube_end_p3_in_axes2_y*tube_qd_2 + tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z
-        )
-        # (tube-nu_3) bias of the angular acceleration along moment direction 3
-        tube_nu_3_t = (
-        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
-        )
-        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
-        # (tube-etad_1) acceleration with which the joints turn along moment direction 1
-        tube_alpha_in_axes2_y = (
-        alpha_x*axis_y_tube_axes2_x + alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z
-        )
-        tube_alpha_in_axes2_z = (
-        alpha_x*axis_z_tube_axes2_x + alpha_y*axis_z_tube_axes2_y + alpha_z*axis_z_tube_axes2_z
-        )
-        tube_etad_1_t = (
-        tube_alpha_in_axes2_y*tube_end_p1_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m1_in_axes2_z
-        )
-        tube_etad_1 = tube_nu_1 - tube_etad_1_t
-        # (tube-etad_2) acceleration with which the joints turn along moment direction 2
-        tube_alpha_in_axes2_x = (
-        alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z
-        )
-        tube_etad_2_t = (
-        tube_alpha_in_axes2_x*tube_end_p2_in_axes2_y - tube_alpha_in_axes2_y*tube_n_m2_in_axes2_y
-        )
-        tube_etad_2 = tube_nu_2 - tube_etad_2_t
-        # (tube-etad_3) acceleration with which the joints turn along moment direction 3
-        tube_etad_3_t = (
-        tube_alpha_in_axes2_x*tube_end_p3_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m3_in_axes2_z
-        )
-        tube_etad_3 = tube_nu_3 - tube_etad_3_t
-        # (tube-qdd_1) acceleration of joint 1
-        tube_qdd_1_t = 1.35*tube_etad_1
-        tube_qdd_1_t_2 = 1.35*tube_etad_2
-        tube_qdd_1_t_3 = 1.35*tube_etad_3
-        tube_qdd_1 = (
-        inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y + tube_qd_1_t_2*tube_rel_in_axes2_z +
-            tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_5*tube_qdd_1_t_3 -
-            tube_qd_1_t_4*tube_qdd_1_t_2)
-        )
-        # (tube-qdd_2) acceleration of joint 2
-        tube_qdd_2_t = (
-        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_2*tube_w_1_t_67 +
-            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
-            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69)
-        )
-        tube_qdd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1*tube_w_1_t_58 +
-            tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_2_t*tube_w_1_t_53
-            + tube_rel_in_axes2_y*tube_w_1_t_50)
-        )
-        tube_qdd_2_t_3 = (
-        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_2_t_2*tube_w_1_t_21 +
-            tube_rel_in_axes2_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
-            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
-            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
-            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25
-        )
-        tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
-        # (tube-alpha_1) angular acceleration of link 1
-        tube_alpha_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qdd_1
-        tube_alpha_1_in_axes2_y = -tube_c_2*tube_qdd_1
-        # (tube-alpha_2) angular acceleration of link 2
-        tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x
-        tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz
-        # (tube-B_2) acceleration tensor of link 2
-        tube_B_2_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2
-        tube_B_2_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2
-        tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y
-        tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x
-        # (tube-acc_3) acceleration of the reference point of link 3, less gravity
-        tube_acc_3_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
-        tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
-        tube_g_in_axes2_x = tube_acc_3_t_3*tube_e_1_in_axes2_x + tube_acc_3_t_4*tube_c_2
-        tube_g_in_axes2_y = tube_acc_3_t_4*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
-        tube_acc_3_in_axes2_x = (
-        axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
-            axis_x_tube_axes2_z*tube_S_ddot_z - tube_g_in_axes2_x
-        )
-        tube_acc_3_in_axes2_y = (
-        tube_bias_t_4 + tube_q_3*tube_qdd_2 - tube_bias_t_2 - tube_g_in_axes2_y
-        )
-        tube_acc_3_in_axes2_z = (
-        tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_in_axes2_y*tube_q_3
-        )
-        # (tube-f_3) inertia force of link 3 less its weight
-        tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
-        tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
-        tube_f_3_t_3 = tube_qd_2*tube_qd_2
-        tube_f_3_in_axes2_x = (
-        tube_acc_3_in_axes2_x*tube_link3_mass + tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y -
-            tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_x*(tube_f_3_t_2 +
-            tube_f_3_t_3)
-        )
-        tube_f_3_in_axes2_y = (
-        tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x + tube_acc_3_in_axes2_y*tube_link3_mass +
-            tube_h_3_in_spec2_z*(tube_f_3_t + tube_f_3_t_3) -
-            tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y
-        )
-        tube_f_3_in_axes2_z = (
-        tube_B_2_in_axes2_zx*tube_h_3_in_spec2_x + tube_acc_3_in_axes2_z*tube_link3_mass -
-            tube_B_2_in_axes2_zy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_y*(tube_f_3_t +
-            tube_f_3_t_2)
-        )
-        # (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        tube_mu_2_in_axes2_x = (
-        tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
-            tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
-            tube_J_group_2_in_axes2_yz*(tube_f_3_t_2 - tube_f_3_t_3) +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x +
-            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
-            tube_B_2_in_axes2_zx*tube_J_group_2_in_axes2_xy -
-            tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z
-        )
-        tube_mu_2_in_axes2_y = (
-        tube_B_2_in_axes2_zy*tube_J_group_2_in_axes2_xy +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_y +
-            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
-            tube_B_2_in_axes2_xy*tube_J_group_2_in_axes2_yz -
-            tube_B_2_in_axes2_zx*tube_Sigma_2_in_axes2_xx - tube_J_group_2_in_axes2_xz*(tube_f_3_t
-            - tube_f_3_t_3) - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_x -
-            tube_g_in_axes2_x*tube_h_2_in_spec2_y
-        )
-        tube_mu_2_in_axes2_z = (
-        tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx + tube_J_group_2_in_axes2_xy*(tube_f_3_t -
-            tube_f_3_t_2) + tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
-            tube_J_group_2_in_axes2_yz*tube_alpha_1_in_axes2_y +
-            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_z + tube_acc_3_in_axes2_y*tube_h_3_in_spec2_x
-            - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
-            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x
-        )
-        # (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_q_3
-        tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_q_3
-        # (tube-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z
-        tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17
-        tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 - tube_G_t_2*tube_w_1_t_37)
-        tube_G_t_4 = (
-        inv_tube_w_1_t_63*(tube_G_t_2*tube_w_1_t_41 + tube_G_t_3*tube_w_1_t_53 -
-            tube_G_t*tube_w_1_t_25)
-        )
-        tube_G_t_5 = (
-        inv_tube_w_1_t_75*(tube_G_t*tube_w_1_t_29 + tube_G_t_4*tube_w_1_t_69 +
-            tube_N_2_in_axes2_y*tube_c_2 - tube_G_t_2*tube_w_1_t_45 - tube_G_t_3*tube_w_1_t_58 -
-            tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x)
-        )
-        tube_G_in_axes2_y = (
-        tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 + tube_G_t_3*tube_w_1_t_50 +
-            tube_G_t_4*tube_w_1_t_64 - tube_G_t_5*tube_qd_1_t
-        )
-        tube_G_in_axes2_z = (
-        inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 - tube_G_t_5*tube_qd_1_t_2
-        )
-        # (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m1_t = (
-        tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 + tube_G_t_3*tube_w_1_t_51 +
-            tube_G_t_4*tube_w_1_t_66 - tube_G_t_5*tube_qd_1_t_3
-        )
-        tube_G_m1 = 1.35*tube_G_m1_t
-        # (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 + tube_G_t_5*tube_qd_1_t_4
-        tube_G_m2 = 1.35*tube_G_m2_t
-        # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m3_t = (
-        tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 + tube_G_t_3*tube_w_1_t_52 +
-            tube_G_t_4*tube_w_1_t_68 - tube_G_t_5*tube_qd_1_t_5
-        )
-        tube_G_m3 = 1.35*tube_G_m3_t
-        # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y - tube_G_m3*tube_end_p3_in_axes2_z
-        tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y - tube_G_m1*tube_end_p1_in_axes2_z
-        tube_G_m_in_axes2_z = tube_G_m1*tube_n_m1_in_axes2_z + tube_G_m3*tube_n_m3_in_axes2_z
-        # (tube-c) leg force on the platform without actuation and without the mass at the connection point
-        tube_c_x = (
-        -axis_x_tube_axes2_x*tube_f_3_in_axes2_x - axis_y_tube_axes2_x*tube_G_in_axes2_y -
-            axis_z_tube_axes2_x*tube_G_in_axes2_z
-        )
-        tube_c_y = (
-        -axis_x_tube_axes2_y*tube_f_3_in_axes2_x - axis_y_tube_axes2_y*tube_G_in_axes2_y -
-            axis_z_tube_axes2_y*tube_G_in_axes2_z
-        )
-        tube_c_z = (
-        -axis_x_tube_axes2_z*tube_f_3_in_axes2_x - axis_y_tube_axes2_z*tube_G_in_axes2_y -
-            axis_z_tube_axes2_z*tube_G_in_axes2_z
-        )
-        # (R_a) moment that actuators and external wrench must give
-        tube_R_a_t = (
-        axis_x_tube_axes2_x*tube_G_m_in_axes2_x + axis_y_tube_axes2_x*tube_G_m_in_axes2_y +
-            axis_z_tube_axes2_x*tube_G_m_in_axes2_z + tube_c_y*tube_q_z - tube_c_z*tube_q_y
-        )
-        tube_R_a_t_2 = (
-        axis_x_tube_axes2_y*tube_G_m_in_axes2_x + axis_y_tube_axes2_y*tube_G_m_in_axes2_y +
-            axis_z_tube_axes2_y*tube_G_m_in_axes2_z + tube_c_z*tube_q_x - tube_c_x*tube_q_z
-        )
-        tube_R_a_t_3 = (
-        axis_x_tube_axes2_z*tube_G_m_in_axes2_x + axis_y_tube_axes2_z*tube_G_m_in_axes2_y +
-            axis_z_tube_axes2_z*tube_G_m_in_axes2_z + tube_c_x*tube_q_y - tube_c_y*tube_q_x
-        )
-        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
-        tube_Hk_a_1_x = (
-        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y +
-            axis_y_tube_axes2_z*tube_q_y + axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z -
-            axis_y_tube_axes2_y*tube_q_z
-        )
-        tube_Hk_a_1_y = (
-        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_x*tube_q_z +
-            axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z
-            - axis_y_tube_axes2_z*tube_q_x
-        )
-        tube_Hk_a_1_z = (
-        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_y*tube_q_x +
-            axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z
-            - axis_y_tube_axes2_x*tube_q_y
-        )
-        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
-        tube_Hk_a_2_x = (
-        axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z +
-            axis_z_tube_axes2_z*tube_q_y - axis_x_tube_axes2_x*tube_mu_c2_t -
-            axis_z_tube_axes2_y*tube_q_z
-        )
-        tube_Hk_a_2_y = (
-        axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_x*tube_q_z +
-            axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_y*tube_mu_c2_t -
-            axis_z_tube_axes2_z*tube_q_x
-        )
-        tube_Hk_a_2_z = (
-        axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_y*tube_q_x +
-            axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_z*tube_mu_c2_t -
-            axis_z_tube_axes2_x*tube_q_y
-        )
-        ok = (
-        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
-            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35)
-        )
-        # (R_t) force that actuators and external wrench must give
-        R_t_t_4 += tube_c_x
-        R_t_t_5 += tube_c_y
-        R_t_t_6 += tube_c_z
-        # (R_a) moment that actuators and external wrench must give
-        R_a_tube_x += tube_R_a_t
-        R_a_tube_y += tube_R_a_t_2
-        R_a_tube_z += tube_R_a_t_3
-        # (tube-n_c1) unit force of the constraint wrench
-        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_x
-        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_y
-        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_z
-        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
-        out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
-        out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
-        out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
-        # (tube-n_c2) unit force of the constraint wrench
-        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_x
-        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_y
-        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_z
-        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
-        out_Hk[_Hk_tube[9][leg]] = tube_Hk_a_2_x
-        out_Hk[_Hk_tube[10][leg]] = tube_Hk_a_2_y
-        out_Hk[_Hk_tube[11][leg]] = tube_Hk_a_2_z
-        # (tube-Hk_a_3) moment of the column's unit force about the platform origin
-        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_x
-        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_y
-        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_z
-    # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - R_t_t - R_t_t_4
-    R_t_y = f_p_y - R_t_t_2 - R_t_t_5
-    R_t_z = f_p_z - R_t_t_3 - R_t_t_6
-    # (R_a) moment that actuators and external wrench must give
-    R_a_x = R_a_tube_x + R_a_ups_x + mu_p_x
-    R_a_y = R_a_tube_y + R_a_ups_y + mu_p_y
-    R_a_z = R_a_tube_z + R_a_ups_z + mu_p_z
-    # (R_t) force that actuators and external wrench must give
-    out_required[0] = R_t_x
-    out_required[1] = R_t_y
-    out_required[2] = R_t_z
-    # (R_a) moment that actuators and external wrench must give
-    out_required[3] = R_a_x
-    out_required[4] = R_a_y
-    out_required[5] = R_a_z
-    return ok, (out_required, out_H, out_Hk,)
-
-
-# inverse_kinematics: 135 mul, 100 add, 10 div, 10 sqrt, 10 trig
-def _run_inverse_kinematics(m, X):
-    sqrt = m.sqrt
-    atan2 = m.atan2
-    shared, legs = m.constants("inverse_kinematics")
-    X_0 = X[0]
-    X_1 = X[1]
-    X_2 = X[2]
-    X_3 = X[3]
-    X_4 = X[4]
-    X_5 = X[5]
-    X_6 = X[6]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    t_z = X_2
-    quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
-    quaternion_scale = 2.0/quaternion_norm2
-    quaternion_sx = X_3*quaternion_scale
-    quaternion_sy = X_4*quaternion_scale
-    quaternion_sz = X_5*quaternion_scale
-    quaternion_wx = X_6*quaternion_sx
-    quaternion_wy = X_6*quaternion_sy
-    quaternion_wz = X_6*quaternion_sz
-    quaternion_xx = X_3*quaternion_sx
-    quaternion_xy = X_3*quaternion_sy
-    quaternion_xz = X_3*quaternion_sz
-    quaternion_yy = X_4*quaternion_sy
-    quaternion_yz = X_4*quaternion_sz
-    quaternion_zz = X_5*quaternion_sz
-    R_xx = 1.0 - quaternion_yy - quaternion_zz
-    R_xy = quaternion_xy - quaternion_wz
-    R_xz = quaternion_wy + quaternion_xz
-    R_yx = quaternion_wz + quaternion_xy
-    R_yy = 1.0 - quaternion_xx - quaternion_zz
-    R_yz = quaternion_yz - quaternion_wx
-    R_zx = quaternion_xz - quaternion_wy
-    R_zy = quaternion_wx + quaternion_yz
-    R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = True
-    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_q = m.zeros("q")
-    for leg, k in legs[0]:
-        (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-        ) = k
-        # (ups-S) from the base point to the connection point
-        ups_S_x = (
-        t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z -
-            ups_base_point_x
-        )
-        ups_S_y = (
-        t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z -
-            ups_base_point_y
-        )
-        ups_S_z = (
-        t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
-            ups_base_point_z
-        )
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
-        ups_S_in_turn1_z = (
-        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
-        )
-        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-q_1) displacement of joint 1
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_q_1 = atan2(inv_ups_root_1*ups_S_in_turn1_y, inv_ups_root_1*ups_S_in_turn1_x)
-        # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-q_2) displacement of joint 2
-        inv_ups_q_3 = 1.0/ups_q_3
-        ups_q_2 = atan2(-inv_ups_q_3*ups_S_in_turn1_z, inv_ups_q_3*ups_root_1)
-        ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
-            _TOLERANCE * _TOLERANCE * 1.9124953849)
-        )
-        # (ups-q_1) displacement of joint 1
-        out_q[_q_ups[0][leg]] = ups_q_1
-        # (ups-q_2) displacement of joint 2
-        out_q[_q_ups[1][leg]] = ups_q_2
-        # (ups-q_3) displacement of joint 3
-        out_q[_q_ups[2][leg]] = ups_q_3
-    for leg, k in legs[1]:
-        (
-        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
-            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
-            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
-            tube_branch_1, tube_branch_2, tube_platform_point_x, tube_platform_point_y,
-            tube_platform_point_z,
-        ) = k
-        # (tube-S) from the base point to the connection point
-        tube_S_x = (
-        t_x + R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
-            - tube_base_point_x
-        )
-        tube_S_y = (
-        t_y + R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
-            - tube_base_point_y
-        )
-        tube_S_z = (
-        t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
-            - tube_base_point_z
-        )
-        tube_S_in_turn1_x = (
-        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
-        )
-        tube_S_in_turn1_y = (
-        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
-        )
-        tube_S_in_turn1_z = (
-        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
-        )
-        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
-        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
-        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
-        # (tube-q_1) displacement of joint 1
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_q_1 = atan2(inv_tube_root_1*tube_S_in_turn1_y, inv_tube_root_1*tube_S_in_turn1_x)
-        # (tube-q_3) displacement of joint 3
-        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
-        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-q_2) displacement of joint 2
-        inv_tube_q_3 = 1.0/tube_q_3
-        tube_q_2 = atan2(-inv_tube_q_3*tube_S_in_turn1_z, inv_tube_q_3*tube_root_1)
-        ok = (
-        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002)
-        )
-        # (tube-q_1) displacement of joint 1
-        out_q[_q_tube[0][leg]] = tube_q_1
-        # (tube-q_2) displacement of joint 2
-        out_q[_q_tube[1][leg]] = tube_q_2
-        # (tube-q_3) displacement of joint 3
-        out_q[_q_tube[2][leg]] = tube_q_3
-    return ok, (out_q,)
-
-
-# joint_rates: 552 mul, 344 add, 17 div, 16 sqrt, 0 trig
-def _run_joint_rates(m, X, V):
-    sqrt = m.sqrt
-    shared, legs = m.constants("joint_rates")
-    X_0 = X[0]
-    X_1 = X[1]
-    X_2 = X[2]
-    X_3 = X[3]
-    X_4 = X[4]
-    X_5 = X[5]
-    X_6 = X[6]
-    V_0 = V[0]
-    V_1 = V[1]
-    V_2 = V[2]
-    V_3 = V[3]
-    V_4 = V[4]
-    V_5 = V[5]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    t_z = X_2
-    quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
-    quaternion_scale = 2.0/quaternion_norm2
-    quaternion_sx = X_3*quaternion_scale
-    quaternion_sy = X_4*quaternion_scale
-    quaternion_sz = X_5*quaternion_scale
-    quaternion_wx = X_6*quaternion_sx
-    quaternion_wy = X_6*quaternion_sy
-    quaternion_wz = X_6*quaternion_sz
-    quaternion_xx = X_3*quaternion_sx
-    quaternion_xy = X_3*quaternion_sy
-    quaternion_xz = X_3*quaternion_sz
-    quaternion_yy = X_4*quaternion_sy
-    quaternion_yz = X_4*quaternion_sz
-    quaternion_zz = X_5*quaternion_sz
-    R_xx = 1.0 - quaternion_yy - quaternion_zz
-    R_xy = quaternion_xy - quaternion_wz
-    R_xz = quaternion_wy + quaternion_xz
-    R_yx = quaternion_wz + quaternion_xy
-    R_yy = 1.0 - quaternion_xx - quaternion_zz
-    R_yz = quaternion_yz - quaternion_wx
-    R_zx = quaternion_xz - quaternion_wy
-    R_zy = quaternion_wx + quaternion_yz
-    R_zz = 1.0 - quaternion_xx - quaternion_yy
-    # V: named entries
-    t_dot_x = V_0
-    t_dot_y = V_1
-    t_dot_z = V_2
-    omega_x = V_3
-    omega_y = V_4
-    omega_z = V_5
-    ok = True
-    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qd = m.zeros("qd")
-    for leg, k in legs[0]:
-        (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-        ) = k
-        # (ups-S) from the base point to the connection point
-        ups_q_x = (
-        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
-        )
-        ups_q_y = (
-        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
-        )
-        ups_q_z = (
-        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
-        )
-        ups_S_x = t_x + ups_q_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
-        ups_S_in_turn1_z = (
-        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
-        )
-        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
-        # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-S_dot) velocity of the connection point
-        inv_ups_q_3 = 1.0/ups_q_3
-        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
-        ups_S_dot_x = t_dot_x + omega_y*ups_q_z - omega_z*ups_q_y
-        ups_S_dot_y = t_dot_y + omega_z*ups_q_x - omega_x*ups_q_z
-        ups_S_dot_z = t_dot_z + omega_x*ups_q_y - omega_y*ups_q_x
-        ups_S_dot_in_axes2_x = (
-        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
-            axis_x_ups_axes2_z*ups_S_dot_z
-        )
-        # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
-            axis_z_ups_axes2_z*ups_S_dot_z)
-        )
-        # (ups-qd_2) rate of joint 2
-        ups_qd_2 = (
-        inv_ups_q_3*(ups_S_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
-            ups_S_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
-            ups_S_dot_z*(axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y))
-        )
-        ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
-            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
-            (abs(ups_q_3) > _TOLERANCE * 1.38293)
-        )
-        # (ups-qd_1) rate of joint 1
-        out_qd[_qd_ups[0][leg]] = ups_qd_1
-        # (ups-qd_2) rate of joint 2
-        out_qd[_qd_ups[1][leg]] = ups_qd_2
-        # (ups-qd_3) rate of joint 3
-        out_qd[_qd_ups[2][leg]] = ups_S_dot_in_axes2_x
-    for leg, k in legs[1]:
-        (
-        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
-            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
-            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
-            tube_branch_1, tube_branch_2, tube_platform_joint_rotation_xx,
-            tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
-            tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
-            tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
-            tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
-            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
-        ) = k
-        # (tube-S) from the base point to the connection point
-        tube_q_x = (
-        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
-        )
-        tube_q_y = (
-        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
-        )
-        tube_q_z = (
-        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
-        )
-        tube_S_x = t_x + tube_q_x - tube_base_point_x
-        tube_S_y = t_y + tube_q_y - tube_base_point_y
-        tube_S_z = t_z + tube_q_z - tube_base_point_z
-        tube_S_in_turn1_x = (
-        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
-        )
-        tube_S_in_turn1_y = (
-        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
-        )
-        tube_S_in_turn1_z = (
-        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
-        )
-        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
-        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
-        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
-        # (tube-q_3) displacement of joint 3
-        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
-        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
-        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_q_3 = 1.0/tube_q_3
-        tube_c_2 = inv_tube_q_3*tube_root_1
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
         # (tube-S_dot) velocity of the connection point
-        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
-        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
-        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
-        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
-        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
-        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
-        axis_y_tube_axes2_x = (
-        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
-            tube_base_frame_xz*tube_c_2
-        )
-        axis_y_tube_axes2_y = (
-        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
-            tube_base_frame_yz*tube_c_2
-        )
-        axis_y_tube_axes2_z = (
-        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
-            tube_base_frame_zz*tube_c_2
-        )
-        axis_x_tube_axes2_x = (
-        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
-        )
-        axis_x_tube_axes2_y = (
-        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
-        )
-        axis_x_tube_axes2_z = (
-        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
-        )
-        tube_S_dot_x = t_dot_x + omega_y*tube_q_z - omega_z*tube_q_y
-        tube_S_dot_y = t_dot_y + omega_z*tube_q_x - omega_x*tube_q_z
-        tube_S_dot_z = t_dot_z + omega_x*tube_q_y - omega_y*tube_q_x
-        tube_S_dot_in_axes2_x = (
-        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
-            axis_x_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
-            axis_y_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
-            axis_z_tube_axes2_z*tube_S_dot_z
-        )
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
-        tube_n_m1_t_2 = (
-        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
-        )
-        tube_n_m1_t_3 = (
-        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
-        )
-        tube_n_m1_t_4 = (
-        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
-        )
-        tube_n_m1_t_5 = (
-        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
-        )
-        tube_n_m1_t_6 = (
-        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
-        )
-        tube_n_m1_t_7 = (
-        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
-        )
-        tube_n_m1_t_8 = (
-        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
-        )
-        tube_n_m1_t_9 = (
-        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
-        )
-        tube_n_m1_t_10 = (
-        tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz
-        )
-        tube_n_m1_t_11 = (
-        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz
-        )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
-        tube_n_m1_in_axes2_z = (
-        tube_e_1_in_axes2_x*(tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1) -
-            tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz)
-        )
-        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_t = (
-        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz
-        )
-        tube_n_m2_t_2 = (
-        tube_c_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
-            tube_s_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz)
-        )
-        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_2 + tube_e_1_in_axes2_x*tube_n_m2_t
-        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_2 - tube_c_2*tube_n_m2_t
-        tube_n_m2_t_3 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = (
-        tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz
-        )
-        tube_n_m3_t_2 = (
-        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz
-        )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
-        tube_n_m3_in_axes2_z = (
-        tube_c_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1) +
-            tube_e_1_in_axes2_x*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz)
-        )
-        tube_n_m3_t_3 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
-        # (tube-f_c1) force part of constraint wrench 1
-        tube_f_c1_t = (
-        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
-        )
-        # (tube-m1_c3) moment part 1 of constraint wrench 3
-        inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3
-        # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
-        # (tube-mu2_c3) moment along direction 2 that goes with it
-        tube_mu2_c3 = 1.0/tube_size_c3
-        # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_3
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_3
-        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
-        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_3*tube_q_3
-        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
-        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        tube_w_1_t_10 = 1.35*tube_m1_c3*tube_mu2_c3
-        tube_w_1_t_11 = 1.35*tube_mu2_c3
-        tube_w_1_t_12 = 1.35*tube_m3_c3_t*tube_mu2_c3
-        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
-        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
-        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
-        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
-        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
-        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
-        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
-        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
-        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
-        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
-        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
-        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
-        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
-        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
-        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
-        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
-        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
-        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
-        tube_w_1_t_33 = (
-        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
-            tube_w_1_t_20*tube_w_1_t_20)
-        )
-        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
-        tube_w_1_t_37 = (
-        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
-        )
-        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
-        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
-        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
-        tube_w_1_t_41 = (
-        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
-        )
-        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
-        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
-        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
-        tube_w_1_t_45 = (
-        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
-        )
-        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
-        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
-        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
-        tube_w_1_t_49 = (
-        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
-            tube_w_1_t_40*tube_w_1_t_40)
-        )
-        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
-        tube_w_1_t_53 = (
-        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
-        )
-        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
-        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
-        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
-        tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
-            - tube_w_1_t_47*tube_w_1_t_51
-        )
-        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
-        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
-        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
-        tube_w_1_t_63 = (
-        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
-            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57)
-        )
-        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
-        tube_w_1_t_69 = (
-        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
-            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
-        )
-        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
-        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
-        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
-        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
-        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
-        tube_w_1_t_75 = (
-        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
-            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74)
-        )
-        # (tube-eta_1) rate at which the joints turn along moment direction 1
-        tube_omega_in_axes2_y = (
-        axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
-        )
-        tube_omega_in_axes2_z = (
-        axis_z_tube_axes2_x*omega_x + axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z
-        )
-        tube_eta_1 = (
-        tube_n_m1_in_axes2_z*tube_omega_in_axes2_z - tube_end_p1_in_axes2_z*tube_omega_in_axes2_y
-        )
-        # (tube-eta_2) rate at which the joints turn along moment direction 2
-        tube_omega_in_axes2_x = (
-        axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
-        )
-        tube_eta_2 = (
-        tube_n_m2_in_axes2_y*tube_omega_in_axes2_y - tube_end_p2_in_axes2_y*tube_omega_in_axes2_x
-        )
-        # (tube-eta_3) rate at which the joints turn along moment direction 3
-        tube_eta_3 = (
-        tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
-        )
-        # (tube-qd_1) rate of joint 1
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
-        tube_qd_1_t = 1.35*tube_eta_1
-        tube_qd_1_t_2 = 1.35*tube_eta_2
-        tube_qd_1_t_3 = 1.35*tube_eta_3
-        tube_qd_1 = (
-        inv_tube_w_1_t_75*(inv_tube_w_1_t_75*tube_S_dot_in_axes2_y*tube_w_1_t_70 +
-            inv_tube_w_1_t_75*tube_S_dot_in_axes2_z*tube_w_1_t_71 +
-            inv_tube_w_1_t_75*tube_qd_1_t*tube_w_1_t_72 +
-            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74 -
-            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73)
-        )
-        # (tube-qd_2) rate of joint 2
-        tube_qd_2_t = (
-        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
-        )
-        tube_qd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
-        )
-        tube_qd_2_t_3 = (
-        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
-            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25
-        )
-        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
-        ok = (
-        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
-            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35)
-        )
-        # (tube-qd_1) rate of joint 1
-        out_qd[_qd_tube[0][leg]] = tube_qd_1
-        # (tube-qd_2) rate of joint 2
-        out_qd[_qd_tube[1][leg]] = tube_qd_2
-        # (tube-qd_3) rate of joint 3
-        out_qd[_qd_tube[2][leg]] = tube_S_dot_in_axes2_x
-    return ok, (out_qd,)
-
-
-# joint_accelerations: 831 mul, 532 add, 17 div, 16 sqrt, 0 trig
-def _run_joint_accelerations(m, X, V, A):
-    sqrt = m.sqrt
-    shared, legs = m.constants("joint_accelerations")
-    X_0 = X[0]
-    X_1 = X[1]
-    X_2 = X[2]
-    X_3 = X[3]
-    X_4 = X[4]
-    X_5 = X[5]
-    X_6 = X[6]
-    V_0 = V[0]
-    V_1 = V[1]
-    V_2 = V[2]
-    V_3 = V[3]
-    V_4 = V[4]
-    V_5 = V[5]
-    A_0 = A[0]
-    A_1 = A[1]
-    A_2 = A[2]
-    A_3 = A[3]
-    A_4 = A[4]
-    A_5 = A[5]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    t_z = X_2
-    quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
-    quaternion_scale = 2.0/quaternion_norm2
-    quaternion_sx = X_3*quaternion_scale
-    quaternion_sy = X_4*quaternion_scale
-    quaternion_sz = X_5*quaternion_scale
-    quaternion_wx = X_6*quaternion_sx
-    quaternion_wy = X_6*quaternion_sy
-    quaternion_wz = X_6*quaternion_sz
-    quaternion_xx = X_3*quaternion_sx
-    quaternion_xy = X_3*quaternion_sy
-    quaternion_xz = X_3*quaternion_sz
-    quaternion_yy = X_4*quaternion_sy
-    quaternion_yz = X_4*quaternion_sz
-    quaternion_zz = X_5*quaternion_sz
-    R_xx = 1.0 - quaternion_yy - quaternion_zz
-    R_xy = quaternion_xy - quaternion_wz
-    R_xz = quaternion_wy + quaternion_xz
-    R_yx = quaternion_wz + quaternion_xy
-    R_yy = 1.0 - quaternion_xx - quaternion_zz
-    R_yz = quaternion_yz - quaternion_wx
-    R_zx = quaternion_xz - quaternion_wy
-    R_zy = quaternion_wx + quaternion_yz
-    R_zz = 1.0 - quaternion_xx - quaternion_yy
-    # V: named entries
-    t_dot_x = V_0
-    t_dot_y = V_1
-    t_dot_z = V_2
-    omega_x = V_3
-    omega_y = V_4
-    omega_z = V_5
-    # A: named entries
-    t_ddot_x = A_0
-    t_ddot_y = A_1
-    t_ddot_z = A_2
-    alpha_x = A_3
-    alpha_y = A_4
-    alpha_z = A_5
-    ok = True
-    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_qdd = m.zeros("qdd")
-    for leg, k in legs[0]:
-        (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-        ) = k
-        # (ups-S) from the base point to the connection point
-        ups_q_x = (
-        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
-        )
-        ups_q_y = (
-        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
-        )
-        ups_q_z = (
-        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
-        )
-        ups_S_x = t_x + ups_q_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
-        ups_S_in_turn1_z = (
-        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
-        )
-        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
-        # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-S_dot) velocity of the connection point
-        inv_ups_q_3 = 1.0/ups_q_3
-        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
-        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
-        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
-        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
-        ups_S_dot_x = t_dot_x + ups_S_dot_t
-        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
-        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
-        ups_S_dot_in_axes2_x = (
-        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
-            axis_x_ups_axes2_z*ups_S_dot_z
-        )
-        # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
-            axis_z_ups_axes2_z*ups_S_dot_z)
-        )
-        # (ups-qd_2) rate of joint 2
-        axis_y_ups_axes2_x = (
-        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
-        )
-        axis_y_ups_axes2_y = (
-        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
-        )
-        axis_y_ups_axes2_z = (
-        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
-        )
-        ups_qd_2 = (
-        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
-            axis_y_ups_axes2_z*ups_S_dot_z)
-        )
-        # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z*ups_qd_1
-        ups_omega_1_in_axes2_y = -inv_ups_q_3*ups_qd_1*ups_root_1
-        # (ups-a_p) acceleration of the connection point without its centripetal part
-        ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
-        ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
-        ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x
-        # (ups-S_ddot) acceleration of the connection point
-        ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
-        ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
-        ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
-        # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
-        ups_bias_in_axes2_z = (
-        2.0*ups_omega_1_in_axes2_x*ups_q_3*ups_qd_2 - ups_bias_t*ups_omega_1_in_axes2_y
-        )
-        # (ups-rel) acceleration of the connection point left to the joint accelerations
-        ups_rel_in_axes2_x = (
-        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
-            axis_x_ups_axes2_z*ups_S_ddot_z -
-            ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2)
-        )
-        ups_rel_in_axes2_z = (
-        axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
-            axis_z_ups_axes2_z*ups_S_ddot_z - ups_bias_in_axes2_z
-        )
-        # (ups-qdd_1) acceleration of joint 1
-        ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
-        # (ups-qdd_2) acceleration of joint 2
-        ups_qdd_2 = (
-        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_ddot_x + axis_y_ups_axes2_y*ups_S_ddot_y +
-            axis_y_ups_axes2_z*ups_S_ddot_z - ups_bias_t*ups_qd_2) -
-            ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
-        )
-        ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
-            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
-            (abs(ups_q_3) > _TOLERANCE * 1.38293)
-        )
-        # (ups-qdd_1) acceleration of joint 1
-        out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
-        # (ups-qdd_2) acceleration of joint 2
-        out_qdd[_qdd_ups[1][leg]] = ups_qdd_2
-        # (ups-qdd_3) acceleration of joint 3
-        out_qdd[_qdd_ups[2][leg]] = ups_rel_in_axes2_x
-    for leg, k in legs[1]:
-        (
-        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
-            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
-            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
-            tube_branch_1, tube_branch_2, tube_platform_joint_rotation_xx,
-            tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
-            tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
-            tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
-            tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
-            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
-        ) = k
-        # (tube-S) from the base point to the connection point
-        tube_q_x = (
-        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
-        )
-        tube_q_y = (
-        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
-        )
-        tube_q_z = (
-        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
-        )
-        tube_S_x = t_x + tube_q_x - tube_base_point_x
-        tube_S_y = t_y + tube_q_y - tube_base_point_y
-        tube_S_z = t_z + tube_q_z - tube_base_point_z
-        tube_S_in_turn1_x = (
-        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
-        )
-        tube_S_in_turn1_y = (
-        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
-        )
-        tube_S_in_turn1_z = (
-        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
-        )
-        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
-        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
-        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
-        # (tube-q_3) displacement of joint 3
-        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
-        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
-        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_q_3 = 1.0/tube_q_3
-        tube_c_2 = inv_tube_q_3*tube_root_1
-        # (tube-S_dot) velocity of the connection point
-        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
-        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
-        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
-        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
-        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
-        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
-        axis_y_tube_axes2_x = (
-        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
-            tube_base_frame_xz*tube_c_2
-        )
-        axis_y_tube_axes2_y = (
-        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
-            tube_base_frame_yz*tube_c_2
-        )
-        axis_y_tube_axes2_z = (
-        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
-            tube_base_frame_zz*tube_c_2
-        )
-        axis_x_tube_axes2_x = (
-        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
-        )
-        axis_x_tube_axes2_y = (
-        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
-        )
-        axis_x_tube_axes2_z = (
-        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
-        )
-        tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y
-        tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z
-        tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x
-        tube_S_dot_x = t_dot_x + tube_S_dot_t_3
-        tube_S_dot_y = t_dot_y + tube_S_dot_t_4
-        tube_S_dot_z = t_dot_z + tube_S_dot_t_5
-        tube_S_dot_in_axes2_x = (
-        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
-            axis_x_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
-            axis_y_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
-            axis_z_tube_axes2_z*tube_S_dot_z
-        )
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
-        tube_n_m1_t_2 = (
-        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
-        )
-        tube_n_m1_t_3 = (
-        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
-        )
-        tube_n_m1_t_4 = (
-        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
-        )
-        tube_n_m1_t_5 = (
-        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
-        )
-        tube_n_m1_t_6 = (
-        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
-        )
-        tube_n_m1_t_7 = (
-        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
-        )
-        tube_n_m1_t_8 = (
-        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
-        )
-        tube_n_m1_t_9 = (
-        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
-        )
-        tube_n_m1_t_10 = (
-        tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz
-        )
-        tube_n_m1_t_11 = (
-        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz
-        )
-        tube_n_m1_t_12 = (
-        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz
-        )
-        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
-        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
-        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_t = (
-        tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz
-        )
-        tube_n_m2_t_2 = (
-        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz
-        )
-        tube_n_m2_t_3 = (
-        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz
-        )
-        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
-        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
-        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
-        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = (
-        tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz
-        )
-        tube_n_m3_t_2 = (
-        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz
-        )
-        tube_n_m3_t_3 = (
-        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz
-        )
-        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
-        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
-        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
-        # (tube-f_c1) force part of constraint wrench 1
-        tube_f_c1_t = (
-        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
-        )
-        # (tube-m1_c3) moment part 1 of constraint wrench 3
-        inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
-        # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
-        # (tube-mu2_c3) moment along direction 2 that goes with it
-        tube_mu2_c3 = 1.0/tube_size_c3
-        # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
-        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
-        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
-        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
-        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        tube_w_1_t_10 = 1.35*tube_m1_c3*tube_mu2_c3
-        tube_w_1_t_11 = 1.35*tube_mu2_c3
-        tube_w_1_t_12 = 1.35*tube_m3_c3_t*tube_mu2_c3
-        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
-        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
-        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
-        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
-        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
-        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
-        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
-        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
-        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
-        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
-        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
-        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
-        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
-        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
-        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
-        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
-        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
-        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
-        tube_w_1_t_33 = (
-        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
-            tube_w_1_t_20*tube_w_1_t_20)
-        )
-        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
-        tube_w_1_t_37 = (
-        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
-        )
-        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
-        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
-        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
-        tube_w_1_t_41 = (
-        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
-        )
-        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
-        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
-        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
-        tube_w_1_t_45 = (
-        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
-        )
-        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
-        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
-        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
-        tube_w_1_t_49 = (
-        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
-            tube_w_1_t_40*tube_w_1_t_40)
-        )
-        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
-        tube_w_1_t_53 = (
-        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
-        )
-        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
-        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
-        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
-        tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
-            - tube_w_1_t_47*tube_w_1_t_51
-        )
-        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
-        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
-        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
-        tube_w_1_t_63 = (
-        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
-            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57)
-        )
-        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
-        tube_w_1_t_69 = (
-        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
-            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
-        )
-        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
-        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
-        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
-        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
-        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
-        tube_w_1_t_75 = (
-        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
-            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74)
-        )
-        # (tube-eta_1) rate at which the joints turn along moment direction 1
-        tube_omega_in_axes2_y = (
-        axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
-        )
-        tube_omega_in_axes2_z = (
-        axis_z_tube_axes2_x*omega_x + axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z
-        )
-        tube_eta_1 = (
-        tube_n_m1_in_axes2_z*tube_omega_in_axes2_z - tube_end_p1_in_axes2_z*tube_omega_in_axes2_y
-        )
-        # (tube-eta_2) rate at which the joints turn along moment direction 2
-        tube_omega_in_axes2_x = (
-        axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
-        )
-        tube_eta_2 = (
-        tube_n_m2_in_axes2_y*tube_omega_in_axes2_y - tube_end_p2_in_axes2_y*tube_omega_in_axes2_x
-        )
-        # (tube-eta_3) rate at which the joints turn along moment direction 3
-        tube_eta_3 = (
-        tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
-        )
-        # (tube-qd_1) rate of joint 1
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
-        tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70
-        tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71
-        tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72
-        tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73
-        tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74
-        tube_qd_1_t_6 = 1.35*tube_eta_1
-        tube_qd_1_t_7 = 1.35*tube_eta_2
-        tube_qd_1_t_8 = 1.35*tube_eta_3
-        tube_qd_1 = (
-        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t + tube_S_dot_in_axes2_z*tube_qd_1_t_2
-            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_5*tube_qd_1_t_8 -
-            tube_qd_1_t_4*tube_qd_1_t_7)
-        )
-        # (tube-qd_2) rate of joint 2
-        tube_qd_2_t = (
-        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
-            tube_qd_1_t_7*tube_w_1_t_67 + tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
-        )
-        tube_qd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
-        )
-        tube_qd_2_t_3 = (
-        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t_6*tube_w_1_t_15 +
-            tube_qd_1_t_8*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25
-        )
-        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
-        # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
-        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
-        # (tube-W_2) centripetal tensor of link 2
-        tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
-        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
-        # (tube-a_p) acceleration of the connection point without its centripetal part
-        tube_a_p_x = t_ddot_x + alpha_y*tube_q_z - alpha_z*tube_q_y
-        tube_a_p_y = t_ddot_y + alpha_z*tube_q_x - alpha_x*tube_q_z
-        tube_a_p_z = t_ddot_z + alpha_x*tube_q_y - alpha_y*tube_q_x
-        # (tube-S_ddot) acceleration of the connection point
-        tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
-        tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
-        tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
-        # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = 2.0*tube_S_dot_in_axes2_x
-        tube_bias_in_axes2_y = (
-        tube_bias_t*tube_qd_2 + tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*tube_q_3
-        )
-        tube_bias_in_axes2_z = (
-        2.0*tube_W_2_in_axes2_xz*tube_q_3 - tube_bias_t*tube_omega_1_in_axes2_y
-        )
-        # (tube-rel) acceleration of the connection point left to the joint accelerations
-        tube_rel_in_axes2_x = (
-        axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
-            axis_x_tube_axes2_z*tube_S_ddot_z +
-            tube_q_3*(tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y + tube_qd_2*tube_qd_2)
-        )
-        tube_rel_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_ddot_x + axis_y_tube_axes2_y*tube_S_ddot_y +
-            axis_y_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_y
-        )
-        tube_rel_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_ddot_x + axis_z_tube_axes2_y*tube_S_ddot_y +
-            axis_z_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_z
-        )
-        # (tube-nd_m1) rate of moment direction 1
-        tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
-        tube_nd_m1_in_axes2_y = (
-        tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
-            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x
-        )
-        tube_nd_m1_in_axes2_z = (
-        tube_end_p1_in_axes2_x*tube_omega_in_axes2_z - tube_end_p1_in_axes2_x*tube_qd_2 -
-            tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
-        )
-        # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
-        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
-        tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
-        tube_nu_1_t_4 = (
-        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
-        )
-        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
-        # (tube-nd_m2) rate of moment direction 2
-        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
-        tube_nd_m2_in_axes2_x = (
-        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
-        )
-        tube_nd_m2_in_axes2_y = (
-        tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y
-        )
-        # (tube-nu_2) bias of the angular acceleration along moment direction 2
-        tube_nu_2_t = (
-        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
-        )
-        tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
-        )
-        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
-        # (tube-nd_m3) rate of moment direction 3
-        tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
-        tube_nd_m3_in_axes2_x = (
-        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
-        )
-        tube_nd_m3_in_axes2_z = (
-        tube_end_p3_in_axes2_y*tube_qd_2 + tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z
-        )
-        # (tube-nu_3) bias of the angular acceleration along moment direction 3
-        tube_nu_3_t = (
-        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
-        )
-        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
-        # (tube-etad_1) acceleration with which the joints turn along moment direction 1
-        tube_alpha_in_axes2_y = (
-        alpha_x*axis_y_tube_axes2_x + alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z
-        )
-        tube_alpha_in_axes2_z = (
-        alpha_x*axis_z_tube_axes2_x + alpha_y*axis_z_tube_axes2_y + alpha_z*axis_z_tube_axes2_z
-        )
-        tube_etad_1_t = (
-        tube_alpha_in_axes2_y*tube_end_p1_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m1_in_axes2_z
-        )
-        tube_etad_1 = tube_nu_1 - tube_etad_1_t
-        # (tube-etad_2) acceleration with which the joints turn along moment direction 2
-        tube_alpha_in_axes2_x = (
-        alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z
-        )
-        tube_etad_2_t = (
-        tube_alpha_in_axes2_x*tube_end_p2_in_axes2_y - tube_alpha_in_axes2_y*tube_n_m2_in_axes2_y
-        )
-        tube_etad_2 = tube_nu_2 - tube_etad_2_t
-        # (tube-etad_3) acceleration with which the joints turn along moment direction 3
-        tube_etad_3_t = (
-        tube_alpha_in_axes2_x*tube_end_p3_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m3_in_axes2_z
-        )
-        tube_etad_3 = tube_nu_3 - tube_etad_3_t
-        # (tube-qdd_1) acceleration of joint 1
-        tube_qdd_1_t = 1.35*tube_etad_1
-        tube_qdd_1_t_2 = 1.35*tube_etad_2
-        tube_qdd_1_t_3 = 1.35*tube_etad_3
-        tube_qdd_1 = (
-        inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y + tube_qd_1_t_2*tube_rel_in_axes2_z +
-            tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_5*tube_qdd_1_t_3 -
-            tube_qd_1_t_4*tube_qdd_1_t_2)
-        )
-        # (tube-qdd_2) acceleration of joint 2
-        tube_qdd_2_t = (
-        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_2*tube_w_1_t_67 +
-            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
-            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69)
-        )
-        tube_qdd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1*tube_w_1_t_58 +
-            tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_2_t*tube_w_1_t_53
-            + tube_rel_in_axes2_y*tube_w_1_t_50)
-        )
-        tube_qdd_2_t_3 = (
-        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_2_t_2*tube_w_1_t_21 +
-            tube_rel_in_axes2_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
-            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
-            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
-            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25
-        )
-        tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
-        ok = (
-        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
-            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35)
-        )
-        # (tube-qdd_1) acceleration of joint 1
-        out_qdd[_qdd_tube[0][leg]] = tube_qdd_1
-        # (tube-qdd_2) acceleration of joint 2
-        out_qdd[_qdd_tube[1][leg]] = tube_qdd_2
-        # (tube-qdd_3) acceleration of joint 3
-        out_qdd[_qdd_tube[2][leg]] = tube_rel_in_axes2_x
-    return ok, (out_qdd,)
-
-
-# constraints: 134 mul, 76 add, 4 div, 3 sqrt, 0 trig
-def _run_constraints(m, X):
-    sqrt = m.sqrt
-    shared, legs = m.constants("constraints")
-    X_0 = X[0]
-    X_1 = X[1]
-    X_2 = X[2]
-    X_3 = X[3]
-    X_4 = X[4]
-    X_5 = X[5]
-    X_6 = X[6]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    t_z = X_2
-    quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
-    quaternion_scale = 2.0/quaternion_norm2
-    quaternion_sx = X_3*quaternion_scale
-    quaternion_sy = X_4*quaternion_scale
-    quaternion_sz = X_5*quaternion_scale
-    quaternion_wx = X_6*quaternion_sx
-    quaternion_wy = X_6*quaternion_sy
-    quaternion_wz = X_6*quaternion_sz
-    quaternion_xx = X_3*quaternion_sx
-    quaternion_xy = X_3*quaternion_sy
-    quaternion_xz = X_3*quaternion_sz
-    quaternion_yy = X_4*quaternion_sy
-    quaternion_yz = X_4*quaternion_sz
-    quaternion_zz = X_5*quaternion_sz
-    R_xx = 1.0 - quaternion_yy - quaternion_zz
-    R_xy = quaternion_xy - quaternion_wz
-    R_xz = quaternion_wy + quaternion_xz
-    R_yx = quaternion_wz + quaternion_xy
-    R_yy = 1.0 - quaternion_xx - quaternion_zz
-    R_yz = quaternion_yz - quaternion_wx
-    R_zx = quaternion_xz - quaternion_wy
-    R_zy = quaternion_wx + quaternion_yz
-    R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = True
-    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_constraints = m.zeros("constraints")
-    for leg, k in legs[0]:
-        (
-        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
-            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
-            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
-            tube_branch_1, tube_branch_2, tube_platform_joint_rotation_xx,
-            tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
-            tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
-            tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
-            tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
-            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
-        ) = k
-        # (tube-S) from the base point to the connection point
-        tube_S_x = (
-        t_x + R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
-            - tube_base_point_x
-        )
-        tube_S_y = (
-        t_y + R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
-            - tube_base_point_y
-        )
-        tube_S_z = (
-        t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
-            - tube_base_point_z
-        )
-        tube_S_in_turn1_x = (
-        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
-        )
-        tube_S_in_turn1_y = (
-        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
-        )
-        tube_S_in_turn1_z = (
-        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
-        )
-        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
-        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
-        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
-        # (tube-q_3) displacement of joint 3
-        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
-        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
-        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_q_3 = 1.0/tube_q_3
-        tube_c_2 = inv_tube_q_3*tube_root_1
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
-        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
-        tube_n_m1_t_2 = (
-        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
-        )
-        tube_n_m1_t_3 = (
-        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
-        )
-        tube_n_m1_t_4 = (
-        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
-        )
-        tube_n_m1_t_5 = (
-        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
-        )
-        tube_n_m1_t_6 = (
-        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
-        )
-        tube_n_m1_t_7 = (
-        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
-        )
-        tube_n_m1_t_8 = (
-        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
-        )
-        tube_n_m1_t_9 = (
-        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
-        )
-        tube_n_m1_t_10 = (
-        tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz
-        )
-        tube_n_m1_t_11 = (
-        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz
-        )
-        tube_n_m1_t_12 = (
-        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz
-        )
-        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
-        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
-        tube_n_m1_in_axes1_z = tube_c_2*(tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1)
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_t = (
-        tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz
-        )
-        tube_n_m2_t_2 = (
-        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz
-        )
-        tube_n_m2_t_3 = (
-        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz
-        )
-        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
-        tube_n_m2_t_5 = (
-        tube_c_2*(tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3) +
-            tube_e_1_in_axes2_x*(tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3)
-        )
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = (
-        tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz
-        )
-        tube_n_m3_t_2 = (
-        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz
-        )
-        tube_n_m3_t_3 = (
-        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz
-        )
-        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
-        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
-        tube_n_m3_t_5 = tube_e_1_in_axes2_x*(tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1)
-        # (tube-f_c1) force part of constraint wrench 1
-        tube_f_c1_t = (
-        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
-        )
-        # (tube-m1_c3) moment part 1 of constraint wrench 3
-        inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
-        # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
-        # (tube-mu2_c3) moment along direction 2 that goes with it
-        tube_mu2_c3 = 1.0/tube_size_c3
-        # (tube-phi_c1) loop-closure residual along the constraint force
-        tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
-        tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
-        tube_phi_c1 = (
-        inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_t_5*tube_q_3 -
-            inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes1_z*tube_q_3
-        )
-        # (tube-phi_c2) loop-closure residual along the constraint force
-        tube_phi_c2 = (
-        inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_in_axes2_z*tube_root_1 +
-            inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes2_z*tube_root_1
-        )
-        # (tube-phi_c3) loop-closure residual about the constraint moment
-        tube_phi_c3 = (
-        -tube_mu2_c3*(tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1) -
-            tube_end_p1_in_axes2_x*tube_m1_c3*tube_mu2_c3 -
-            tube_end_p3_in_axes2_y*tube_m3_c3_t*tube_mu2_c3
-        )
-        ok = (
-        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
-            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0)
-        )
-        # (tube-phi_c1) loop-closure residual along the constraint force
-        out_constraints[_constraints_tube[0][leg]] = tube_phi_c1
-        # (tube-phi_c2) loop-closure residual along the constraint force
-        out_constraints[_constraints_tube[1][leg]] = tube_phi_c2
-        # (tube-phi_c3) loop-closure residual about the constraint moment
-        out_constraints[_constraints_tube[2][leg]] = tube_phi_c3
-    return ok, (out_constraints,)
-
-
-# legs: 1245 mul, 885 add, 17 div, 16 sqrt, 0 trig
-def _run_legs(m, X, V, A):
-    sqrt = m.sqrt
-    shared, legs = m.constants("legs")
-    X_0 = X[0]
-    X_1 = X[1]
-    X_2 = X[2]
-    X_3 = X[3]
-    X_4 = X[4]
-    X_5 = X[5]
-    X_6 = X[6]
-    V_0 = V[0]
-    V_1 = V[1]
-    V_2 = V[2]
-    V_3 = V[3]
-    V_4 = V[4]
-    V_5 = V[5]
-    A_0 = A[0]
-    A_1 = A[1]
-    A_2 = A[2]
-    A_3 = A[3]
-    A_4 = A[4]
-    A_5 = A[5]
-    # X: named entries
-    t_x = X_0
-    t_y = X_1
-    t_z = X_2
-    quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
-    quaternion_scale = 2.0/quaternion_norm2
-    quaternion_sx = X_3*quaternion_scale
-    quaternion_sy = X_4*quaternion_scale
-    quaternion_sz = X_5*quaternion_scale
-    quaternion_wx = X_6*quaternion_sx
-    quaternion_wy = X_6*quaternion_sy
-    quaternion_wz = X_6*quaternion_sz
-    quaternion_xx = X_3*quaternion_sx
-    quaternion_xy = X_3*quaternion_sy
-    quaternion_xz = X_3*quaternion_sz
-    quaternion_yy = X_4*quaternion_sy
-    quaternion_yz = X_4*quaternion_sz
-    quaternion_zz = X_5*quaternion_sz
-    R_xx = 1.0 - quaternion_yy - quaternion_zz
-    R_xy = quaternion_xy - quaternion_wz
-    R_xz = quaternion_wy + quaternion_xz
-    R_yx = quaternion_wz + quaternion_xy
-    R_yy = 1.0 - quaternion_xx - quaternion_zz
-    R_yz = quaternion_yz - quaternion_wx
-    R_zx = quaternion_xz - quaternion_wy
-    R_zy = quaternion_wx + quaternion_yz
-    R_zz = 1.0 - quaternion_xx - quaternion_yy
-    # V: named entries
-    t_dot_x = V_0
-    t_dot_y = V_1
-    t_dot_z = V_2
-    omega_x = V_3
-    omega_y = V_4
-    omega_z = V_5
-    # A: named entries
-    t_ddot_x = A_0
-    t_ddot_y = A_1
-    t_ddot_z = A_2
-    alpha_x = A_3
-    alpha_y = A_4
-    alpha_z = A_5
-    ok = True
-    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
-    out_leg_force = m.zeros("leg_force")
-    out_actuator = m.zeros("actuator")
-    out_constraint_direction = m.zeros("constraint_direction")
-    for leg, k in legs[0]:
-        (
-        ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
-            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z,
-        ) = k
-        # (ups-S) from the base point to the connection point
-        ups_q_x = (
-        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
-        )
-        ups_q_y = (
-        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
-        )
-        ups_q_z = (
-        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
-        )
-        ups_S_x = t_x + ups_q_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
-        ups_S_in_turn1_z = (
-        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
-        )
-        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
-        # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_q_3 = 1.0/ups_q_3
-        ups_c_2 = inv_ups_q_3*ups_root_1
-        # (ups-S_dot) velocity of the connection point
-        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
-        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
-        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
-        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
-        ups_S_dot_x = t_dot_x + ups_S_dot_t
-        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
-        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
-        ups_S_dot_in_axes2_x = (
-        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
-            axis_x_ups_axes2_z*ups_S_dot_z
-        )
-        # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
-            axis_z_ups_axes2_z*ups_S_dot_z)
-        )
-        # (ups-qd_2) rate of joint 2
-        axis_y_ups_axes2_x = (
-        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
-        )
-        axis_y_ups_axes2_y = (
-        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
-        )
-        axis_y_ups_axes2_z = (
-        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
-        )
-        ups_qd_2 = (
-        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
-            axis_y_ups_axes2_z*ups_S_dot_z)
-        )
-        # (ups-omega_1) angular velocity of link 1
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
-        ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
-        ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
-        # (ups-W_2) centripetal tensor of link 2
-        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
-        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
-        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
-        # (ups-a_p) acceleration of the connection point without its centripetal part
-        ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
-        ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
-        ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x
-        # (ups-S_ddot) acceleration of the connection point
-        ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
-        ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
-        ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
-        ups_S_ddot_in_axes2_z = (
-        axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
-            axis_z_ups_axes2_z*ups_S_ddot_z
-        )
-        # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
-        ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
-        # (ups-rel) acceleration of the connection point left to the joint accelerations
-        ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
-        # (ups-qdd_1) acceleration of joint 1
-        ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
-        # (ups-alpha_1) angular acceleration of link 1
-        ups_alpha_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1
-        ups_alpha_1_in_axes2_y = -ups_c_2*ups_qdd_1
-        # (ups-alpha_2) angular acceleration of link 2
-        ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
-        ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
-        # (ups-B_2) acceleration tensor of link 2
-        ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x
-        ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
-        ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
-        ups_B_2_in_axes2_yx = (
-        inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
-        ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
-        ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
-        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
-        ups_acc_3_in_axes2_x = (
-        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
-            axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x
-        )
-        ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_g_in_axes2_y
-        ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
-        # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
-        ups_mu_2_t_2 = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
-        ups_mu_2_t_3 = ups_qd_2*ups_qd_2
-        ups_mu_2_in_axes2_x = (
-        ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2
-            - ups_mu_2_t_3) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
-            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z
-        )
-        ups_mu_2_in_axes2_y = (
-        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
-            ups_mu_2_t_3) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
-            ups_g_in_axes2_x*ups_h_2_in_spec2_y
-        )
-        ups_mu_2_in_axes2_z = (
-        ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_t -
-            ups_mu_2_t_2) + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
-            ups_g_in_axes2_y*ups_h_2_in_spec2_x
-        )
-        # (ups-c) leg force on the platform without actuation and without the mass at the connection point
-        ups_c_in_axes2_y = (
-        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_in_axes2_z -
-            ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
-            ups_mu_2_t_3)
-        )
-        ups_c_in_axes2_z = (
-        inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-            ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t +
-            ups_mu_2_t_2) - ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
-        )
-        # (ups-c_true) leg force on the platform without actuation, the last link's mass included
-        ups_c_true_in_axes2_x = (
-        ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z - ups_acc_3_in_axes2_x*ups_link3_mass -
-            ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y - ups_h_3_in_spec2_x*(-ups_mu_2_t_2 -
-            ups_mu_2_t_3)
-        )
-        ups_c_true_in_axes2_y = ups_c_in_axes2_y - ups_acc_3_in_axes2_y*ups_link3_mass
-        ups_c_true_in_axes2_z = ups_c_in_axes2_z - ups_acc_3_in_axes2_z*ups_link3_mass
-        ups_c_true_x = (
-        axis_x_ups_axes2_x*ups_c_true_in_axes2_x + axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
-            axis_z_ups_axes2_x*ups_c_true_in_axes2_z
-        )
-        ups_c_true_y = (
-        axis_x_ups_axes2_y*ups_c_true_in_axes2_x + axis_y_ups_axes2_y*ups_c_true_in_axes2_y +
-            axis_z_ups_axes2_y*ups_c_true_in_axes2_z
-        )
-        ups_c_true_z = (
-        axis_x_ups_axes2_z*ups_c_true_in_axes2_x + axis_y_ups_axes2_z*ups_c_true_in_axes2_y +
-            axis_z_ups_axes2_z*ups_c_true_in_axes2_z
-        )
-        ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
-            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
-            (abs(ups_q_3) > _TOLERANCE * 1.38293)
-        )
-        # (ups-c_true) leg force on the platform without actuation, the last link's mass included
-        out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
-        out_leg_force[_leg_force_ups[1][leg]] = ups_c_true_y
-        out_leg_force[_leg_force_ups[2][leg]] = ups_c_true_z
-        # (ups-w_3) reciprocal vector 3
-        out_actuator[_actuator_ups[0][leg]] = axis_x_ups_axes2_x
-        out_actuator[_actuator_ups[1][leg]] = axis_x_ups_axes2_y
-        out_actuator[_actuator_ups[2][leg]] = axis_x_ups_axes2_z
-    for leg, k in legs[1]:
-        (
-        tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz, tube_J_group_2_in_axes2_yz,
-            tube_Sigma_2_in_axes2_xx, tube_Sigma_2_in_axes2_yy, tube_Sigma_2_in_axes2_zz,
-            tube_acc_3_t, tube_acc_3_t_2, tube_acc_3_t_3, tube_base_frame_xx, tube_base_frame_xy,
-            tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz,
-            tube_base_frame_zx, tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x,
-            tube_base_point_y, tube_base_point_z, tube_branch_1, tube_branch_2,
-            tube_h_2_in_spec2_x, tube_h_2_in_spec2_y, tube_h_2_in_spec2_z, tube_h_3_in_spec2_x,
-            tube_h_3_in_spec2_y, tube_h_3_in_spec2_z, tube_link3_mass,
-            tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
-            tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
-            tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
-            tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
-            tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
-            tube_platform_point_z,
-        ) = k
-        # (tube-S) from the base point to the connection point
-        tube_q_x = (
-        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
-        )
-        tube_q_y = (
-        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
-        )
-        tube_q_z = (
-        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
-        )
-        tube_S_x = t_x + tube_q_x - tube_base_point_x
-        tube_S_y = t_y + tube_q_y - tube_base_point_y
-        tube_S_z = t_z + tube_q_z - tube_base_point_z
-        tube_S_in_turn1_x = (
-        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
-        )
-        tube_S_in_turn1_y = (
-        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
-        )
-        tube_S_in_turn1_z = (
-        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
-        )
-        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
-        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
-        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
-        # (tube-q_3) displacement of joint 3
-        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
-        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
-        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_q_3 = 1.0/tube_q_3
-        tube_c_2 = inv_tube_q_3*tube_root_1
-        # (tube-S_dot) velocity of the connection point
-        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
         axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
         axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
         axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
@@ -10864,6 +8355,15 @@ def _run_legs(m, X, V, A):
             tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74)
         )
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
+        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
+        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
+        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
         # (tube-eta_1) rate at which the joints turn along moment direction 1
         tube_omega_in_axes2_y = (
         axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
@@ -10886,36 +8386,30 @@ def _run_legs(m, X, V, A):
         tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-qd_1) rate of joint 1
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
-        tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70
-        tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71
-        tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72
-        tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73
-        tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74
-        tube_qd_1_t_6 = 1.35*tube_eta_1
-        tube_qd_1_t_7 = 1.35*tube_eta_2
-        tube_qd_1_t_8 = 1.35*tube_eta_3
+        tube_qd_1_t = 1.35*tube_eta_1
+        tube_qd_1_t_2 = 1.35*tube_eta_2
+        tube_qd_1_t_3 = 1.35*tube_eta_3
         tube_qd_1 = (
-        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t + tube_S_dot_in_axes2_z*tube_qd_1_t_2
-            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_5*tube_qd_1_t_8 -
-            tube_qd_1_t_4*tube_qd_1_t_7)
+        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
+            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
         )
         # (tube-qd_2) rate of joint 2
         tube_qd_2_t = (
         inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
-            tube_qd_1_t_7*tube_w_1_t_67 + tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
+            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
         )
         tube_qd_2_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
             tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
+            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
         )
         tube_qd_2_t_3 = (
-        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t_6*tube_w_1_t_15 +
-            tube_qd_1_t_8*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
+            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
             inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
             tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
             tube_qd_2_t*tube_w_1_t_25
         )
@@ -10926,15 +8420,18 @@ def _run_legs(m, X, V, A):
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
         tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
+        tube_W_2_t = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
+        tube_W_2_t_2 = tube_qd_2*tube_qd_2
+        tube_W_2_t_3 = tube_W_2_t + tube_W_2_t_2
         tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
-        # (tube-a_p) acceleration of the connection point without its centripetal part
-        tube_a_p_x = t_ddot_x + alpha_y*tube_q_z - alpha_z*tube_q_y
-        tube_a_p_y = t_ddot_y + alpha_z*tube_q_x - alpha_x*tube_q_z
-        tube_a_p_z = t_ddot_z + alpha_x*tube_q_y - alpha_y*tube_q_x
         # (tube-S_ddot) acceleration of the connection point
-        tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
-        tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
-        tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
+        tube_S_ddot_x = t_ddot_x + B_p_xy*tube_q_y + B_p_xz*tube_q_z - W_p_t_4*tube_q_x
+        tube_S_ddot_y = t_ddot_y + B_p_yx*tube_q_x + B_p_yz*tube_q_z - W_p_t_5*tube_q_y
+        tube_S_ddot_z = t_ddot_z + B_p_zx*tube_q_x + B_p_zy*tube_q_y - W_p_t_6*tube_q_z
+        tube_S_ddot_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
+            axis_x_tube_axes2_z*tube_S_ddot_z
+        )
         # (tube-bias) acceleration of the connection point at zero joint accelerations
         tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
         tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
@@ -11041,9 +8538,9 @@ def _run_legs(m, X, V, A):
         tube_qdd_1_t_2 = 1.35*tube_etad_2
         tube_qdd_1_t_3 = 1.35*tube_etad_3
         tube_qdd_1 = (
-        inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y + tube_qd_1_t_2*tube_rel_in_axes2_z +
-            tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_5*tube_qdd_1_t_3 -
-            tube_qd_1_t_4*tube_qdd_1_t_2)
+        inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_t + tube_m3_w_1_t*tube_qdd_1_t_3 +
+            tube_rel_in_axes2_y*tube_w_1_t_76 + tube_rel_in_axes2_z*tube_w_1_t_77 -
+            tube_m2_w_1_t*tube_qdd_1_t_2)
         )
         # (tube-qdd_2) acceleration of joint 2
         tube_qdd_2_t = (
@@ -11081,10 +8578,7 @@ def _run_legs(m, X, V, A):
         tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
         tube_g_in_axes2_x = tube_acc_3_t_3*tube_e_1_in_axes2_x + tube_acc_3_t_4*tube_c_2
         tube_g_in_axes2_y = tube_acc_3_t_4*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
-        tube_acc_3_in_axes2_x = (
-        axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
-            axis_x_tube_axes2_z*tube_S_ddot_z - tube_g_in_axes2_x
-        )
+        tube_acc_3_in_axes2_x = tube_S_ddot_in_axes2_x - tube_g_in_axes2_x
         tube_acc_3_in_axes2_y = (
         tube_bias_t_4 + tube_q_3*tube_qdd_2 - tube_bias_t_2 - tube_g_in_axes2_y
         )
@@ -11093,49 +8587,55 @@ def _run_legs(m, X, V, A):
         )
         # (tube-f_3) inertia force of link 3 less its weight
         tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
-        tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
-        tube_f_3_t_3 = tube_qd_2*tube_qd_2
+        tube_f_3_t_2 = tube_W_2_t_3*tube_h_3_in_spec2_x
+        tube_f_3_t_3 = tube_h_3_in_spec2_z*(tube_W_2_t_2 + tube_f_3_t)
+        tube_f_3_t_4 = tube_h_3_in_spec2_y*(tube_W_2_t + tube_f_3_t)
         tube_f_3_in_axes2_x = (
         tube_acc_3_in_axes2_x*tube_link3_mass + tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y -
-            tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_x*(tube_f_3_t_2 +
-            tube_f_3_t_3)
+            tube_f_3_t_2 - tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z
         )
         tube_f_3_in_axes2_y = (
-        tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x + tube_acc_3_in_axes2_y*tube_link3_mass +
-            tube_h_3_in_spec2_z*(tube_f_3_t + tube_f_3_t_3) -
-            tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y
+        tube_f_3_t_3 + tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x +
+            tube_acc_3_in_axes2_y*tube_link3_mass - tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y
         )
         tube_f_3_in_axes2_z = (
         tube_B_2_in_axes2_zx*tube_h_3_in_spec2_x + tube_acc_3_in_axes2_z*tube_link3_mass -
-            tube_B_2_in_axes2_zy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_y*(tube_f_3_t +
-            tube_f_3_t_2)
+            tube_f_3_t_4 - tube_B_2_in_axes2_zy*tube_h_3_in_spec2_z
         )
         # (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        tube_mu_2_t = tube_J_group_2_in_axes2_yz*(tube_W_2_t - tube_W_2_t_2)
+        tube_mu_2_t_2 = tube_J_group_2_in_axes2_xz*(tube_f_3_t - tube_W_2_t_2)
+        tube_mu_2_t_3 = tube_J_group_2_in_axes2_xy*(tube_f_3_t - tube_W_2_t)
+        tube_mu_2_t_4 = (
+        tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z
+        )
+        tube_mu_2_t_5 = (
+        tube_g_in_axes2_x*tube_h_2_in_spec2_y - tube_g_in_axes2_z*tube_h_2_in_spec2_x
+        )
+        tube_mu_2_t_6 = (
+        tube_g_in_axes2_x*tube_h_2_in_spec2_z + tube_g_in_axes2_y*tube_h_2_in_spec2_x
+        )
         tube_mu_2_in_axes2_x = (
-        tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
+        tube_mu_2_t + tube_mu_2_t_4 + tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
             tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
-            tube_J_group_2_in_axes2_yz*(tube_f_3_t_2 - tube_f_3_t_3) +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x +
-            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x -
             tube_B_2_in_axes2_zx*tube_J_group_2_in_axes2_xy -
             tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z
         )
         tube_mu_2_in_axes2_y = (
         tube_B_2_in_axes2_zy*tube_J_group_2_in_axes2_xy +
             tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_y +
-            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_y - tube_mu_2_t_2 - tube_mu_2_t_5 -
             tube_B_2_in_axes2_xy*tube_J_group_2_in_axes2_yz -
-            tube_B_2_in_axes2_zx*tube_Sigma_2_in_axes2_xx - tube_J_group_2_in_axes2_xz*(tube_f_3_t
-            - tube_f_3_t_3) - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_x -
-            tube_g_in_axes2_x*tube_h_2_in_spec2_y
+            tube_B_2_in_axes2_zx*tube_Sigma_2_in_axes2_xx -
+            tube_acc_3_in_axes2_z*tube_h_3_in_spec2_x
         )
         tube_mu_2_in_axes2_z = (
-        tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx + tube_J_group_2_in_axes2_xy*(tube_f_3_t -
-            tube_f_3_t_2) + tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
+        tube_mu_2_t_3 + tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
+            tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
             tube_J_group_2_in_axes2_yz*tube_alpha_1_in_axes2_y +
             tube_acc_3_in_axes2_x*tube_h_3_in_spec2_z + tube_acc_3_in_axes2_y*tube_h_3_in_spec2_x
-            - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
-            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x
+            - tube_mu_2_t_6 - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy
         )
         # (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_q_3
@@ -11155,24 +8655,2795 @@ def _run_legs(m, X, V, A):
         )
         tube_G_in_axes2_y = (
         tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 + tube_G_t_3*tube_w_1_t_50 +
-            tube_G_t_4*tube_w_1_t_64 - tube_G_t_5*tube_qd_1_t
+            tube_G_t_4*tube_w_1_t_64 - tube_G_t_5*tube_w_1_t_76
         )
         tube_G_in_axes2_z = (
-        inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 - tube_G_t_5*tube_qd_1_t_2
+        inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 - tube_G_t_5*tube_w_1_t_77
         )
         # (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_t = (
         tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 + tube_G_t_3*tube_w_1_t_51 +
-            tube_G_t_4*tube_w_1_t_66 - tube_G_t_5*tube_qd_1_t_3
+            tube_G_t_4*tube_w_1_t_66 - tube_G_t_5*tube_m1_w_1_t
         )
         tube_G_m1 = 1.35*tube_G_m1_t
         # (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 + tube_G_t_5*tube_qd_1_t_4
+        tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 + tube_G_t_5*tube_m2_w_1_t
         tube_G_m2 = 1.35*tube_G_m2_t
         # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m3_t = (
         tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 + tube_G_t_3*tube_w_1_t_52 +
-            tube_G_t_4*tube_w_1_t_68 - tube_G_t_5*tube_qd_1_t_5
+            tube_G_t_4*tube_w_1_t_68 - tube_G_t_5*tube_m3_w_1_t
+        )
+        tube_G_m3 = 1.35*tube_G_m3_t
+        # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y - tube_G_m3*tube_end_p3_in_axes2_z
+        tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y - tube_G_m1*tube_end_p1_in_axes2_z
+        tube_G_m_in_axes2_z = tube_G_m1*tube_n_m1_in_axes2_z + tube_G_m3*tube_n_m3_in_axes2_z
+        # (tube-c) leg force on the platform without actuation and without the mass at the connection point
+        tube_c_x = (
+        -axis_x_tube_axes2_x*tube_f_3_in_axes2_x - axis_y_tube_axes2_x*tube_G_in_axes2_y -
+            axis_z_tube_axes2_x*tube_G_in_axes2_z
+        )
+        tube_c_y = (
+        -axis_x_tube_axes2_y*tube_f_3_in_axes2_x - axis_y_tube_axes2_y*tube_G_in_axes2_y -
+            axis_z_tube_axes2_y*tube_G_in_axes2_z
+        )
+        tube_c_z = (
+        -axis_x_tube_axes2_z*tube_f_3_in_axes2_x - axis_y_tube_axes2_z*tube_G_in_axes2_y -
+            axis_z_tube_axes2_z*tube_G_in_axes2_z
+        )
+        # (tube-c_m) moment of the leg on the platform without actuation
+        tube_c_m_x = (
+        -axis_x_tube_axes2_x*tube_G_m_in_axes2_x - axis_y_tube_axes2_x*tube_G_m_in_axes2_y -
+            axis_z_tube_axes2_x*tube_G_m_in_axes2_z
+        )
+        tube_c_m_y = (
+        -axis_x_tube_axes2_y*tube_G_m_in_axes2_x - axis_y_tube_axes2_y*tube_G_m_in_axes2_y -
+            axis_z_tube_axes2_y*tube_G_m_in_axes2_z
+        )
+        tube_c_m_z = (
+        -axis_x_tube_axes2_z*tube_G_m_in_axes2_x - axis_y_tube_axes2_z*tube_G_m_in_axes2_y -
+            axis_z_tube_axes2_z*tube_G_m_in_axes2_z
+        )
+        # (R_a) moment that actuators and external wrench must give
+        tube_R_a_t = tube_c_y*tube_q_z - tube_c_m_x - tube_c_z*tube_q_y
+        tube_R_a_t_2 = tube_c_z*tube_q_x - tube_c_m_y - tube_c_x*tube_q_z
+        tube_R_a_t_3 = tube_c_x*tube_q_y - tube_c_m_z - tube_c_y*tube_q_x
+        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
+        tube_Hk_a_1_x = tube_mu_c1_x + axis_y_tube_axes2_z*tube_q_y - axis_y_tube_axes2_y*tube_q_z
+        tube_Hk_a_1_y = tube_mu_c1_y + axis_y_tube_axes2_x*tube_q_z - axis_y_tube_axes2_z*tube_q_x
+        tube_Hk_a_1_z = tube_mu_c1_z + axis_y_tube_axes2_y*tube_q_x - axis_y_tube_axes2_x*tube_q_y
+        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
+        tube_Hk_a_2_x = tube_mu_c2_x + axis_z_tube_axes2_z*tube_q_y - axis_z_tube_axes2_y*tube_q_z
+        tube_Hk_a_2_y = tube_mu_c2_y + axis_z_tube_axes2_x*tube_q_z - axis_z_tube_axes2_z*tube_q_x
+        tube_Hk_a_2_z = tube_mu_c2_z + axis_z_tube_axes2_y*tube_q_x - axis_z_tube_axes2_x*tube_q_y
+        ok = (
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35)
+        )
+        # (R_t) force that actuators and external wrench must give
+        R_t_t_4 += tube_c_x
+        R_t_t_5 += tube_c_y
+        R_t_t_6 += tube_c_z
+        # (R_a) moment that actuators and external wrench must give
+        R_a_tube_x += tube_R_a_t
+        R_a_tube_y += tube_R_a_t_2
+        R_a_tube_z += tube_R_a_t_3
+        # (tube-n_c1) unit force of the constraint wrench
+        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_x
+        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_y
+        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_z
+        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
+        out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
+        out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
+        out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
+        # (tube-n_c2) unit force of the constraint wrench
+        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_x
+        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_y
+        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_z
+        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
+        out_Hk[_Hk_tube[9][leg]] = tube_Hk_a_2_x
+        out_Hk[_Hk_tube[10][leg]] = tube_Hk_a_2_y
+        out_Hk[_Hk_tube[11][leg]] = tube_Hk_a_2_z
+        # (tube-Hk_a_3) moment of the column's unit force about the platform origin
+        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_x
+        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_y
+        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_z
+    # (R_t) force that actuators and external wrench must give
+    R_t_x = f_p_x - R_t_t - R_t_t_4
+    R_t_y = f_p_y - R_t_t_2 - R_t_t_5
+    R_t_z = f_p_z - R_t_t_3 - R_t_t_6
+    # (R_a) moment that actuators and external wrench must give
+    R_a_x = R_a_tube_x + R_a_ups_x + mu_p_x
+    R_a_y = R_a_tube_y + R_a_ups_y + mu_p_y
+    R_a_z = R_a_tube_z + R_a_ups_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
+    out_required[0] = R_t_x
+    out_required[1] = R_t_y
+    out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
+    out_required[3] = R_a_x
+    out_required[4] = R_a_y
+    out_required[5] = R_a_z
+    return ok, (out_required, out_H, out_Hk,)
+
+
+# inverse_kinematics: 135 mul, 100 add, 10 div, 10 sqrt, 10 trig
+def _run_inverse_kinematics(m, X):
+    sqrt = m.sqrt
+    atan2 = m.atan2
+    shared, legs = m.constants("inverse_kinematics")
+    X_0 = X[0]
+    X_1 = X[1]
+    X_2 = X[2]
+    X_3 = X[3]
+    X_4 = X[4]
+    X_5 = X[5]
+    X_6 = X[6]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    t_z = X_2
+    quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
+    quaternion_scale = 2.0/quaternion_norm2
+    quaternion_sx = X_3*quaternion_scale
+    quaternion_sy = X_4*quaternion_scale
+    quaternion_sz = X_5*quaternion_scale
+    quaternion_wx = X_6*quaternion_sx
+    quaternion_wy = X_6*quaternion_sy
+    quaternion_wz = X_6*quaternion_sz
+    quaternion_xx = X_3*quaternion_sx
+    quaternion_xy = X_3*quaternion_sy
+    quaternion_xz = X_3*quaternion_sz
+    quaternion_yy = X_4*quaternion_sy
+    quaternion_yz = X_4*quaternion_sz
+    quaternion_zz = X_5*quaternion_sz
+    R_xx = 1.0 - quaternion_yy - quaternion_zz
+    R_xy = quaternion_xy - quaternion_wz
+    R_xz = quaternion_wy + quaternion_xz
+    R_yx = quaternion_wz + quaternion_xy
+    R_yy = 1.0 - quaternion_xx - quaternion_zz
+    R_yz = quaternion_yz - quaternion_wx
+    R_zx = quaternion_xz - quaternion_wy
+    R_zy = quaternion_wx + quaternion_yz
+    R_zz = 1.0 - quaternion_xx - quaternion_yy
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_q = m.zeros("q")
+    for leg, k in legs[0]:
+        (
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ) = k
+        # (ups-S) from the base point to the connection point
+        ups_q_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
+        )
+        ups_q_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
+        )
+        ups_q_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
+        )
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
+        ups_S_in_turn1_x = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
+        )
+        ups_S_in_turn1_y = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        ups_S_in_turn1_z = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_1) displacement of joint 1
+        ups_q_1 = atan2(ups_s_1, ups_c_1)
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        ups_q_2 = atan2(-ups_e_1_in_axes2_x, ups_c_2)
+        ok = (
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849)
+        )
+        # (ups-q_1) displacement of joint 1
+        out_q[_q_ups[0][leg]] = ups_q_1
+        # (ups-q_2) displacement of joint 2
+        out_q[_q_ups[1][leg]] = ups_q_2
+        # (ups-q_3) displacement of joint 3
+        out_q[_q_ups[2][leg]] = ups_q_3
+    for leg, k in legs[1]:
+        (
+        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+            tube_branch_1, tube_branch_2, tube_platform_point_x, tube_platform_point_y,
+            tube_platform_point_z,
+        ) = k
+        # (tube-S) from the base point to the connection point
+        tube_q_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
+        )
+        tube_q_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
+        )
+        tube_q_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
+        )
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
+        tube_S_in_turn1_x = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
+        )
+        tube_S_in_turn1_y = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
+        )
+        tube_S_in_turn1_z = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
+        )
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_1) displacement of joint 1
+        tube_q_1 = atan2(tube_s_1, tube_c_1)
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
+        # (tube-q_2) displacement of joint 2
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        tube_q_2 = atan2(-tube_e_1_in_axes2_x, tube_c_2)
+        ok = (
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002)
+        )
+        # (tube-q_1) displacement of joint 1
+        out_q[_q_tube[0][leg]] = tube_q_1
+        # (tube-q_2) displacement of joint 2
+        out_q[_q_tube[1][leg]] = tube_q_2
+        # (tube-q_3) displacement of joint 3
+        out_q[_q_tube[2][leg]] = tube_q_3
+    return ok, (out_q,)
+
+
+# joint_rates: 552 mul, 344 add, 17 div, 16 sqrt, 0 trig
+def _run_joint_rates(m, X, V):
+    sqrt = m.sqrt
+    shared, legs = m.constants("joint_rates")
+    X_0 = X[0]
+    X_1 = X[1]
+    X_2 = X[2]
+    X_3 = X[3]
+    X_4 = X[4]
+    X_5 = X[5]
+    X_6 = X[6]
+    V_0 = V[0]
+    V_1 = V[1]
+    V_2 = V[2]
+    V_3 = V[3]
+    V_4 = V[4]
+    V_5 = V[5]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    t_z = X_2
+    quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
+    quaternion_scale = 2.0/quaternion_norm2
+    quaternion_sx = X_3*quaternion_scale
+    quaternion_sy = X_4*quaternion_scale
+    quaternion_sz = X_5*quaternion_scale
+    quaternion_wx = X_6*quaternion_sx
+    quaternion_wy = X_6*quaternion_sy
+    quaternion_wz = X_6*quaternion_sz
+    quaternion_xx = X_3*quaternion_sx
+    quaternion_xy = X_3*quaternion_sy
+    quaternion_xz = X_3*quaternion_sz
+    quaternion_yy = X_4*quaternion_sy
+    quaternion_yz = X_4*quaternion_sz
+    quaternion_zz = X_5*quaternion_sz
+    R_xx = 1.0 - quaternion_yy - quaternion_zz
+    R_xy = quaternion_xy - quaternion_wz
+    R_xz = quaternion_wy + quaternion_xz
+    R_yx = quaternion_wz + quaternion_xy
+    R_yy = 1.0 - quaternion_xx - quaternion_zz
+    R_yz = quaternion_yz - quaternion_wx
+    R_zx = quaternion_xz - quaternion_wy
+    R_zy = quaternion_wx + quaternion_yz
+    R_zz = 1.0 - quaternion_xx - quaternion_yy
+    # V: named entries
+    t_dot_x = V_0
+    t_dot_y = V_1
+    t_dot_z = V_2
+    omega_x = V_3
+    omega_y = V_4
+    omega_z = V_5
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_qd = m.zeros("qd")
+    for leg, k in legs[0]:
+        (
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ) = k
+        # (ups-S) from the base point to the connection point
+        ups_q_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
+        )
+        ups_q_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
+        )
+        ups_q_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
+        )
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
+        ups_S_in_turn1_x = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
+        )
+        ups_S_in_turn1_y = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        ups_S_in_turn1_z = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_q_3 = 1.0/ups_q_3
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
+        )
+        # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
+        ups_qd_2 = (
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
+        )
+        ok = (
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
+            (abs(ups_q_3) > _TOLERANCE * 1.38293)
+        )
+        # (ups-qd_1) rate of joint 1
+        out_qd[_qd_ups[0][leg]] = ups_qd_1
+        # (ups-qd_2) rate of joint 2
+        out_qd[_qd_ups[1][leg]] = ups_qd_2
+        # (ups-qd_3) rate of joint 3
+        out_qd[_qd_ups[2][leg]] = ups_S_dot_in_axes2_x
+    for leg, k in legs[1]:
+        (
+        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+            tube_branch_1, tube_branch_2, tube_platform_joint_rotation_xx,
+            tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+            tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+            tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+            tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
+        ) = k
+        # (tube-S) from the base point to the connection point
+        tube_q_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
+        )
+        tube_q_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
+        )
+        tube_q_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
+        )
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
+        tube_S_in_turn1_x = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
+        )
+        tube_S_in_turn1_y = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
+        )
+        tube_S_in_turn1_z = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
+        )
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
+        # (tube-q_2) displacement of joint 2
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        # (tube-S_dot) velocity of the connection point
+        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
+        axis_y_tube_axes2_x = (
+        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
+            tube_base_frame_xz*tube_c_2
+        )
+        axis_y_tube_axes2_y = (
+        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
+            tube_base_frame_yz*tube_c_2
+        )
+        axis_y_tube_axes2_z = (
+        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
+            tube_base_frame_zz*tube_c_2
+        )
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
+        )
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
+        )
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
+        )
+        tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y
+        tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z
+        tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t_3
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_4
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_5
+        tube_S_dot_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
+            axis_y_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
+            axis_z_tube_axes2_z*tube_S_dot_z
+        )
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
+        )
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
+        )
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
+        )
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
+        )
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
+        )
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
+        )
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
+        )
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
+        )
+        tube_n_m1_t_10 = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
+        )
+        tube_n_m1_t_11 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
+        )
+        tube_n_m1_t_12 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
+        )
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_t = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_2 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_3 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
+        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
+        )
+        tube_n_m3_t_2 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
+        )
+        tube_n_m3_t_3 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
+        )
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
+        # (tube-f_c1) force part of constraint wrench 1
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
+        )
+        # (tube-m1_c1) moment part 1 of constraint wrench 1
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
+        # (tube-m3_c1) moment part 3 of constraint wrench 1
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
+        # (tube-m1_c2) moment part 1 of constraint wrench 2
+        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        # (tube-m3_c2) moment part 3 of constraint wrench 2
+        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3
+        # (tube-mu3_c3) moment along direction 3 that goes with it
+        tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
+        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
+        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
+        tube_w_1_t_6 = 1.35*tube_m1_c1_t
+        tube_w_1_t_7 = 1.35*tube_m3_c1_t
+        tube_w_1_t_8 = 1.35*tube_m1_c2_t
+        tube_w_1_t_9 = 1.35*tube_m3_c2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
+        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
+        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
+        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
+        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
+        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
+        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
+        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
+        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
+        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
+        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
+        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
+        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
+        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
+        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
+        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
+        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
+        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
+        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
+        tube_w_1_t_33 = (
+        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
+            tube_w_1_t_20*tube_w_1_t_20)
+        )
+        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
+        tube_w_1_t_37 = (
+        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
+        )
+        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
+        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
+        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
+        tube_w_1_t_41 = (
+        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
+        )
+        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
+        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
+        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
+        tube_w_1_t_45 = (
+        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
+        )
+        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
+        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
+        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
+        tube_w_1_t_49 = (
+        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
+            tube_w_1_t_40*tube_w_1_t_40)
+        )
+        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
+        tube_w_1_t_53 = (
+        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
+        )
+        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
+        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
+        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
+        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
+        tube_w_1_t_58 = (
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
+            - tube_w_1_t_47*tube_w_1_t_51
+        )
+        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
+        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
+        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
+        tube_w_1_t_63 = (
+        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
+            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+            tube_w_1_t_57*tube_w_1_t_57)
+        )
+        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
+        tube_w_1_t_69 = (
+        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
+            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
+        )
+        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
+        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
+        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
+        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
+        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
+        tube_w_1_t_75 = (
+        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
+            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+            tube_w_1_t_74*tube_w_1_t_74)
+        )
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
+        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
+        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
+        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
+        # (tube-eta_1) rate at which the joints turn along moment direction 1
+        tube_omega_in_axes2_y = (
+        axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
+        )
+        tube_omega_in_axes2_z = (
+        axis_z_tube_axes2_x*omega_x + axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z
+        )
+        tube_eta_1 = (
+        tube_n_m1_in_axes2_z*tube_omega_in_axes2_z - tube_end_p1_in_axes2_z*tube_omega_in_axes2_y
+        )
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_omega_in_axes2_x = (
+        axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
+        )
+        tube_eta_2 = (
+        tube_n_m2_in_axes2_y*tube_omega_in_axes2_y - tube_end_p2_in_axes2_y*tube_omega_in_axes2_x
+        )
+        # (tube-eta_3) rate at which the joints turn along moment direction 3
+        tube_eta_3 = (
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
+        )
+        # (tube-qd_1) rate of joint 1
+        tube_qd_1_t = 1.35*tube_eta_1
+        tube_qd_1_t_2 = 1.35*tube_eta_2
+        tube_qd_1_t_3 = 1.35*tube_eta_3
+        tube_qd_1 = (
+        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
+            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
+        )
+        # (tube-qd_2) rate of joint 2
+        tube_qd_2_t = (
+        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
+            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
+        )
+        tube_qd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
+        )
+        tube_qd_2_t_3 = (
+        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
+            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25
+        )
+        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
+        ok = (
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35)
+        )
+        # (tube-qd_1) rate of joint 1
+        out_qd[_qd_tube[0][leg]] = tube_qd_1
+        # (tube-qd_2) rate of joint 2
+        out_qd[_qd_tube[1][leg]] = tube_qd_2
+        # (tube-qd_3) rate of joint 3
+        out_qd[_qd_tube[2][leg]] = tube_S_dot_in_axes2_x
+    return ok, (out_qd,)
+
+
+# joint_accelerations: 822 mul, 526 add, 17 div, 16 sqrt, 0 trig
+def _run_joint_accelerations(m, X, V, A):
+    sqrt = m.sqrt
+    shared, legs = m.constants("joint_accelerations")
+    X_0 = X[0]
+    X_1 = X[1]
+    X_2 = X[2]
+    X_3 = X[3]
+    X_4 = X[4]
+    X_5 = X[5]
+    X_6 = X[6]
+    V_0 = V[0]
+    V_1 = V[1]
+    V_2 = V[2]
+    V_3 = V[3]
+    V_4 = V[4]
+    V_5 = V[5]
+    A_0 = A[0]
+    A_1 = A[1]
+    A_2 = A[2]
+    A_3 = A[3]
+    A_4 = A[4]
+    A_5 = A[5]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    t_z = X_2
+    quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
+    quaternion_scale = 2.0/quaternion_norm2
+    quaternion_sx = X_3*quaternion_scale
+    quaternion_sy = X_4*quaternion_scale
+    quaternion_sz = X_5*quaternion_scale
+    quaternion_wx = X_6*quaternion_sx
+    quaternion_wy = X_6*quaternion_sy
+    quaternion_wz = X_6*quaternion_sz
+    quaternion_xx = X_3*quaternion_sx
+    quaternion_xy = X_3*quaternion_sy
+    quaternion_xz = X_3*quaternion_sz
+    quaternion_yy = X_4*quaternion_sy
+    quaternion_yz = X_4*quaternion_sz
+    quaternion_zz = X_5*quaternion_sz
+    R_xx = 1.0 - quaternion_yy - quaternion_zz
+    R_xy = quaternion_xy - quaternion_wz
+    R_xz = quaternion_wy + quaternion_xz
+    R_yx = quaternion_wz + quaternion_xy
+    R_yy = 1.0 - quaternion_xx - quaternion_zz
+    R_yz = quaternion_yz - quaternion_wx
+    R_zx = quaternion_xz - quaternion_wy
+    R_zy = quaternion_wx + quaternion_yz
+    R_zz = 1.0 - quaternion_xx - quaternion_yy
+    # V: named entries
+    t_dot_x = V_0
+    t_dot_y = V_1
+    t_dot_z = V_2
+    omega_x = V_3
+    omega_y = V_4
+    omega_z = V_5
+    # A: named entries
+    t_ddot_x = A_0
+    t_ddot_y = A_1
+    t_ddot_z = A_2
+    alpha_x = A_3
+    alpha_y = A_4
+    alpha_z = A_5
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
+    for leg, k in legs[0]:
+        (
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ) = k
+        # (ups-S) from the base point to the connection point
+        ups_q_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
+        )
+        ups_q_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
+        )
+        ups_q_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
+        )
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
+        ups_S_in_turn1_x = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
+        )
+        ups_S_in_turn1_y = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        ups_S_in_turn1_z = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
+        )
+        # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
+        ups_qd_2 = (
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
+        )
+        # (ups-omega_1) angular velocity of link 1
+        ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
+        ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
+        # (ups-S_ddot) acceleration of the connection point
+        ups_S_ddot_x = t_ddot_x + B_p_xy*ups_q_y + B_p_xz*ups_q_z - W_p_t_4*ups_q_x
+        ups_S_ddot_y = t_ddot_y + B_p_yx*ups_q_x + B_p_yz*ups_q_z - W_p_t_5*ups_q_y
+        ups_S_ddot_z = t_ddot_z + B_p_zx*ups_q_x + B_p_zy*ups_q_y - W_p_t_6*ups_q_z
+        ups_S_ddot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
+            axis_x_ups_axes2_z*ups_S_ddot_z
+        )
+        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_S_ddot_in_axes2_z = (
+        axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
+            axis_z_ups_axes2_z*ups_S_ddot_z
+        )
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
+        # (ups-rel) acceleration of the connection point left to the joint accelerations
+        ups_rel_in_axes2_x = ups_S_ddot_in_axes2_x - ups_W_2_in_axes2_xx*ups_q_3
+        ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
+        # (ups-qdd_1) acceleration of joint 1
+        ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
+        ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
+        ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
+        ok = (
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
+            (abs(ups_q_3) > _TOLERANCE * 1.38293)
+        )
+        # (ups-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
+        # (ups-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_ups[1][leg]] = ups_qdd_2
+        # (ups-qdd_3) acceleration of joint 3
+        out_qdd[_qdd_ups[2][leg]] = ups_rel_in_axes2_x
+    for leg, k in legs[1]:
+        (
+        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+            tube_branch_1, tube_branch_2, tube_platform_joint_rotation_xx,
+            tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+            tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+            tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+            tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
+        ) = k
+        # (tube-S) from the base point to the connection point
+        tube_q_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
+        )
+        tube_q_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
+        )
+        tube_q_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
+        )
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
+        tube_S_in_turn1_x = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
+        )
+        tube_S_in_turn1_y = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
+        )
+        tube_S_in_turn1_z = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
+        )
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
+        # (tube-q_2) displacement of joint 2
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        # (tube-S_dot) velocity of the connection point
+        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
+        axis_y_tube_axes2_x = (
+        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
+            tube_base_frame_xz*tube_c_2
+        )
+        axis_y_tube_axes2_y = (
+        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
+            tube_base_frame_yz*tube_c_2
+        )
+        axis_y_tube_axes2_z = (
+        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
+            tube_base_frame_zz*tube_c_2
+        )
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
+        )
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
+        )
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
+        )
+        tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y
+        tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z
+        tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t_3
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_4
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_5
+        tube_S_dot_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
+            axis_y_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
+            axis_z_tube_axes2_z*tube_S_dot_z
+        )
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
+        )
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
+        )
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
+        )
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
+        )
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
+        )
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
+        )
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
+        )
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
+        )
+        tube_n_m1_t_10 = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
+        )
+        tube_n_m1_t_11 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
+        )
+        tube_n_m1_t_12 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
+        )
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_t = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_2 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_3 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
+        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
+        )
+        tube_n_m3_t_2 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
+        )
+        tube_n_m3_t_3 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
+        )
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
+        # (tube-f_c1) force part of constraint wrench 1
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
+        )
+        # (tube-m1_c1) moment part 1 of constraint wrench 1
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
+        # (tube-m3_c1) moment part 3 of constraint wrench 1
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
+        # (tube-m1_c2) moment part 1 of constraint wrench 2
+        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        # (tube-m3_c2) moment part 3 of constraint wrench 2
+        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3
+        # (tube-mu3_c3) moment along direction 3 that goes with it
+        tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
+        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
+        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
+        tube_w_1_t_6 = 1.35*tube_m1_c1_t
+        tube_w_1_t_7 = 1.35*tube_m3_c1_t
+        tube_w_1_t_8 = 1.35*tube_m1_c2_t
+        tube_w_1_t_9 = 1.35*tube_m3_c2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
+        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
+        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
+        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
+        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
+        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
+        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
+        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
+        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
+        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
+        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
+        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
+        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
+        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
+        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
+        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
+        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
+        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
+        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
+        tube_w_1_t_33 = (
+        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
+            tube_w_1_t_20*tube_w_1_t_20)
+        )
+        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
+        tube_w_1_t_37 = (
+        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
+        )
+        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
+        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
+        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
+        tube_w_1_t_41 = (
+        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
+        )
+        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
+        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
+        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
+        tube_w_1_t_45 = (
+        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
+        )
+        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
+        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
+        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
+        tube_w_1_t_49 = (
+        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
+            tube_w_1_t_40*tube_w_1_t_40)
+        )
+        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
+        tube_w_1_t_53 = (
+        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
+        )
+        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
+        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
+        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
+        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
+        tube_w_1_t_58 = (
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
+            - tube_w_1_t_47*tube_w_1_t_51
+        )
+        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
+        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
+        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
+        tube_w_1_t_63 = (
+        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
+            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+            tube_w_1_t_57*tube_w_1_t_57)
+        )
+        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
+        tube_w_1_t_69 = (
+        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
+            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
+        )
+        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
+        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
+        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
+        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
+        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
+        tube_w_1_t_75 = (
+        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
+            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+            tube_w_1_t_74*tube_w_1_t_74)
+        )
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
+        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
+        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
+        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
+        # (tube-eta_1) rate at which the joints turn along moment direction 1
+        tube_omega_in_axes2_y = (
+        axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
+        )
+        tube_omega_in_axes2_z = (
+        axis_z_tube_axes2_x*omega_x + axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z
+        )
+        tube_eta_1 = (
+        tube_n_m1_in_axes2_z*tube_omega_in_axes2_z - tube_end_p1_in_axes2_z*tube_omega_in_axes2_y
+        )
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_omega_in_axes2_x = (
+        axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
+        )
+        tube_eta_2 = (
+        tube_n_m2_in_axes2_y*tube_omega_in_axes2_y - tube_end_p2_in_axes2_y*tube_omega_in_axes2_x
+        )
+        # (tube-eta_3) rate at which the joints turn along moment direction 3
+        tube_eta_3 = (
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
+        )
+        # (tube-qd_1) rate of joint 1
+        tube_qd_1_t = 1.35*tube_eta_1
+        tube_qd_1_t_2 = 1.35*tube_eta_2
+        tube_qd_1_t_3 = 1.35*tube_eta_3
+        tube_qd_1 = (
+        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
+            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
+        )
+        # (tube-qd_2) rate of joint 2
+        tube_qd_2_t = (
+        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
+            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
+        )
+        tube_qd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
+        )
+        tube_qd_2_t_3 = (
+        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
+            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25
+        )
+        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
+        # (tube-omega_1) angular velocity of link 1
+        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
+        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
+        # (tube-W_2) centripetal tensor of link 2
+        tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
+        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
+        tube_W_2_t = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
+        tube_W_2_t_2 = tube_qd_2*tube_qd_2
+        tube_W_2_t_3 = tube_W_2_t + tube_W_2_t_2
+        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
+        # (tube-S_ddot) acceleration of the connection point
+        tube_S_ddot_x = t_ddot_x + B_p_xy*tube_q_y + B_p_xz*tube_q_z - W_p_t_4*tube_q_x
+        tube_S_ddot_y = t_ddot_y + B_p_yx*tube_q_x + B_p_yz*tube_q_z - W_p_t_5*tube_q_y
+        tube_S_ddot_z = t_ddot_z + B_p_zx*tube_q_x + B_p_zy*tube_q_y - W_p_t_6*tube_q_z
+        tube_S_ddot_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
+            axis_x_tube_axes2_z*tube_S_ddot_z
+        )
+        # (tube-bias) acceleration of the connection point at zero joint accelerations
+        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
+        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
+        tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
+        tube_bias_t_4 = tube_bias_t_3*tube_qd_2
+        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
+        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
+        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
+        # (tube-rel) acceleration of the connection point left to the joint accelerations
+        tube_rel_in_axes2_x = tube_S_ddot_in_axes2_x + tube_W_2_t_3*tube_q_3
+        tube_rel_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_ddot_x + axis_y_tube_axes2_y*tube_S_ddot_y +
+            axis_y_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_y
+        )
+        tube_rel_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_ddot_x + axis_z_tube_axes2_y*tube_S_ddot_y +
+            axis_z_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_z
+        )
+        # (tube-nd_m1) rate of moment direction 1
+        tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
+        tube_nd_m1_in_axes2_y = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x
+        )
+        tube_nd_m1_in_axes2_z = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_z - tube_end_p1_in_axes2_x*tube_qd_2 -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
+        )
+        # (tube-nu_1) bias of the angular acceleration along moment direction 1
+        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
+        tube_nu_1_t_4 = (
+        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
+        )
+        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
+        # (tube-nd_m2) rate of moment direction 2
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
+        tube_nd_m2_in_axes2_x = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
+        )
+        tube_nd_m2_in_axes2_y = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y
+        )
+        # (tube-nu_2) bias of the angular acceleration along moment direction 2
+        tube_nu_2_t = (
+        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        )
+        tube_nu_2_t_2 = (
+        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
+        )
+        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
+        # (tube-nd_m3) rate of moment direction 3
+        tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
+        tube_nd_m3_in_axes2_x = (
+        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
+        )
+        tube_nd_m3_in_axes2_z = (
+        tube_end_p3_in_axes2_y*tube_qd_2 + tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z
+        )
+        # (tube-nu_3) bias of the angular acceleration along moment direction 3
+        tube_nu_3_t = (
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
+        )
+        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
+        # (tube-etad_1) acceleration with which the joints turn along moment direction 1
+        tube_alpha_in_axes2_y = (
+        alpha_x*axis_y_tube_axes2_x + alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z
+        )
+        tube_alpha_in_axes2_z = (
+        alpha_x*axis_z_tube_axes2_x + alpha_y*axis_z_tube_axes2_y + alpha_z*axis_z_tube_axes2_z
+        )
+        tube_etad_1_t = (
+        tube_alpha_in_axes2_y*tube_end_p1_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m1_in_axes2_z
+        )
+        tube_etad_1 = tube_nu_1 - tube_etad_1_t
+        # (tube-etad_2) acceleration with which the joints turn along moment direction 2
+        tube_alpha_in_axes2_x = (
+        alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z
+        )
+        tube_etad_2_t = (
+        tube_alpha_in_axes2_x*tube_end_p2_in_axes2_y - tube_alpha_in_axes2_y*tube_n_m2_in_axes2_y
+        )
+        tube_etad_2 = tube_nu_2 - tube_etad_2_t
+        # (tube-etad_3) acceleration with which the joints turn along moment direction 3
+        tube_etad_3_t = (
+        tube_alpha_in_axes2_x*tube_end_p3_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m3_in_axes2_z
+        )
+        tube_etad_3 = tube_nu_3 - tube_etad_3_t
+        # (tube-qdd_1) acceleration of joint 1
+        tube_qdd_1_t = 1.35*tube_etad_1
+        tube_qdd_1_t_2 = 1.35*tube_etad_2
+        tube_qdd_1_t_3 = 1.35*tube_etad_3
+        tube_qdd_1 = (
+        inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_t + tube_m3_w_1_t*tube_qdd_1_t_3 +
+            tube_rel_in_axes2_y*tube_w_1_t_76 + tube_rel_in_axes2_z*tube_w_1_t_77 -
+            tube_m2_w_1_t*tube_qdd_1_t_2)
+        )
+        # (tube-qdd_2) acceleration of joint 2
+        tube_qdd_2_t = (
+        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_2*tube_w_1_t_67 +
+            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
+            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69)
+        )
+        tube_qdd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1*tube_w_1_t_58 +
+            tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_2_t*tube_w_1_t_53
+            + tube_rel_in_axes2_y*tube_w_1_t_50)
+        )
+        tube_qdd_2_t_3 = (
+        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_2_t_2*tube_w_1_t_21 +
+            tube_rel_in_axes2_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
+            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
+            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
+            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25
+        )
+        tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
+        ok = (
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35)
+        )
+        # (tube-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_tube[0][leg]] = tube_qdd_1
+        # (tube-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_tube[1][leg]] = tube_qdd_2
+        # (tube-qdd_3) acceleration of joint 3
+        out_qdd[_qdd_tube[2][leg]] = tube_rel_in_axes2_x
+    return ok, (out_qdd,)
+
+
+# constraints: 134 mul, 76 add, 4 div, 3 sqrt, 0 trig
+def _run_constraints(m, X):
+    sqrt = m.sqrt
+    shared, legs = m.constants("constraints")
+    X_0 = X[0]
+    X_1 = X[1]
+    X_2 = X[2]
+    X_3 = X[3]
+    X_4 = X[4]
+    X_5 = X[5]
+    X_6 = X[6]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    t_z = X_2
+    quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
+    quaternion_scale = 2.0/quaternion_norm2
+    quaternion_sx = X_3*quaternion_scale
+    quaternion_sy = X_4*quaternion_scale
+    quaternion_sz = X_5*quaternion_scale
+    quaternion_wx = X_6*quaternion_sx
+    quaternion_wy = X_6*quaternion_sy
+    quaternion_wz = X_6*quaternion_sz
+    quaternion_xx = X_3*quaternion_sx
+    quaternion_xy = X_3*quaternion_sy
+    quaternion_xz = X_3*quaternion_sz
+    quaternion_yy = X_4*quaternion_sy
+    quaternion_yz = X_4*quaternion_sz
+    quaternion_zz = X_5*quaternion_sz
+    R_xx = 1.0 - quaternion_yy - quaternion_zz
+    R_xy = quaternion_xy - quaternion_wz
+    R_xz = quaternion_wy + quaternion_xz
+    R_yx = quaternion_wz + quaternion_xy
+    R_yy = 1.0 - quaternion_xx - quaternion_zz
+    R_yz = quaternion_yz - quaternion_wx
+    R_zx = quaternion_xz - quaternion_wy
+    R_zy = quaternion_wx + quaternion_yz
+    R_zz = 1.0 - quaternion_xx - quaternion_yy
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_constraints = m.zeros("constraints")
+    for leg, k in legs[0]:
+        (
+        tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+            tube_branch_1, tube_branch_2, tube_platform_joint_rotation_xx,
+            tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+            tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+            tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+            tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
+        ) = k
+        # (tube-S) from the base point to the connection point
+        tube_q_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
+        )
+        tube_q_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
+        )
+        tube_q_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
+        )
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
+        tube_S_in_turn1_x = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
+        )
+        tube_S_in_turn1_y = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
+        )
+        tube_S_in_turn1_z = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
+        )
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
+        # (tube-q_2) displacement of joint 2
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
+        )
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
+        )
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
+        )
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
+        )
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
+        )
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
+        )
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
+        )
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
+        )
+        tube_n_m1_t_10 = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
+        )
+        tube_n_m1_t_11 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
+        )
+        tube_n_m1_t_12 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
+        )
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_t = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_2 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_3 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
+        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
+        )
+        tube_n_m3_t_2 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
+        )
+        tube_n_m3_t_3 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
+        )
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
+        # (tube-f_c1) force part of constraint wrench 1
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
+        )
+        # (tube-m1_c1) moment part 1 of constraint wrench 1
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
+        # (tube-m3_c1) moment part 3 of constraint wrench 1
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
+        # (tube-m1_c2) moment part 1 of constraint wrench 2
+        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        # (tube-m3_c2) moment part 3 of constraint wrench 2
+        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3
+        # (tube-mu3_c3) moment along direction 3 that goes with it
+        tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
+        # (tube-nd_m1) rate of moment direction 1
+        tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
+        # (tube-nd_m2) rate of moment direction 2
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
+        # (tube-nd_m3) rate of moment direction 3
+        tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
+        # (tube-phi_c1) loop-closure residual along the constraint force
+        tube_phi_c1 = tube_end_p1_in_axes2_x*tube_m1_c1_t - tube_end_p3_in_axes2_y*tube_m3_c1_t
+        # (tube-phi_c2) loop-closure residual along the constraint force
+        tube_phi_c2 = tube_end_p1_in_axes2_x*tube_m1_c2_t + tube_end_p3_in_axes2_y*tube_m3_c2
+        # (tube-phi_c3) loop-closure residual about the constraint moment
+        tube_phi_c3 = (
+        -inv_tube_size_c3*tube_end_p2_in_axes2_z - tube_end_p1_in_axes2_x*tube_mu1_c3 -
+            tube_end_p3_in_axes2_y*tube_mu3_c3_t
+        )
+        ok = (
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0)
+        )
+        # (tube-phi_c1) loop-closure residual along the constraint force
+        out_constraints[_constraints_tube[0][leg]] = tube_phi_c1
+        # (tube-phi_c2) loop-closure residual along the constraint force
+        out_constraints[_constraints_tube[1][leg]] = tube_phi_c2
+        # (tube-phi_c3) loop-closure residual about the constraint moment
+        out_constraints[_constraints_tube[2][leg]] = tube_phi_c3
+    return ok, (out_constraints,)
+
+
+# legs: 1232 mul, 883 add, 17 div, 16 sqrt, 0 trig
+def _run_legs(m, X, V, A):
+    sqrt = m.sqrt
+    shared, legs = m.constants("legs")
+    X_0 = X[0]
+    X_1 = X[1]
+    X_2 = X[2]
+    X_3 = X[3]
+    X_4 = X[4]
+    X_5 = X[5]
+    X_6 = X[6]
+    V_0 = V[0]
+    V_1 = V[1]
+    V_2 = V[2]
+    V_3 = V[3]
+    V_4 = V[4]
+    V_5 = V[5]
+    A_0 = A[0]
+    A_1 = A[1]
+    A_2 = A[2]
+    A_3 = A[3]
+    A_4 = A[4]
+    A_5 = A[5]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    t_z = X_2
+    quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
+    quaternion_scale = 2.0/quaternion_norm2
+    quaternion_sx = X_3*quaternion_scale
+    quaternion_sy = X_4*quaternion_scale
+    quaternion_sz = X_5*quaternion_scale
+    quaternion_wx = X_6*quaternion_sx
+    quaternion_wy = X_6*quaternion_sy
+    quaternion_wz = X_6*quaternion_sz
+    quaternion_xx = X_3*quaternion_sx
+    quaternion_xy = X_3*quaternion_sy
+    quaternion_xz = X_3*quaternion_sz
+    quaternion_yy = X_4*quaternion_sy
+    quaternion_yz = X_4*quaternion_sz
+    quaternion_zz = X_5*quaternion_sz
+    R_xx = 1.0 - quaternion_yy - quaternion_zz
+    R_xy = quaternion_xy - quaternion_wz
+    R_xz = quaternion_wy + quaternion_xz
+    R_yx = quaternion_wz + quaternion_xy
+    R_yy = 1.0 - quaternion_xx - quaternion_zz
+    R_yz = quaternion_yz - quaternion_wx
+    R_zx = quaternion_xz - quaternion_wy
+    R_zy = quaternion_wx + quaternion_yz
+    R_zz = 1.0 - quaternion_xx - quaternion_yy
+    # V: named entries
+    t_dot_x = V_0
+    t_dot_y = V_1
+    t_dot_z = V_2
+    omega_x = V_3
+    omega_y = V_4
+    omega_z = V_5
+    # A: named entries
+    t_ddot_x = A_0
+    t_ddot_y = A_1
+    t_ddot_z = A_2
+    alpha_x = A_3
+    alpha_y = A_4
+    alpha_z = A_5
+    ok = True
+    ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    out_leg_force = m.zeros("leg_force")
+    out_actuator = m.zeros("actuator")
+    out_constraint_direction = m.zeros("constraint_direction")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
+    for leg, k in legs[0]:
+        (
+        ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
+            ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_link3_mass,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ) = k
+        # (ups-S) from the base point to the connection point
+        ups_q_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
+        )
+        ups_q_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
+        )
+        ups_q_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
+        )
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
+        ups_S_in_turn1_x = (
+        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
+        )
+        ups_S_in_turn1_y = (
+        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
+        )
+        ups_S_in_turn1_z = (
+        ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
+        )
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
+        )
+        # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
+        ups_qd_2 = (
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
+        )
+        # (ups-omega_1) angular velocity of link 1
+        ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
+        ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
+        # (ups-S_ddot) acceleration of the connection point
+        ups_S_ddot_x = t_ddot_x + B_p_xy*ups_q_y + B_p_xz*ups_q_z - W_p_t_4*ups_q_x
+        ups_S_ddot_y = t_ddot_y + B_p_yx*ups_q_x + B_p_yz*ups_q_z - W_p_t_5*ups_q_y
+        ups_S_ddot_z = t_ddot_z + B_p_zx*ups_q_x + B_p_zy*ups_q_y - W_p_t_6*ups_q_z
+        ups_S_ddot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
+            axis_x_ups_axes2_z*ups_S_ddot_z
+        )
+        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_S_ddot_in_axes2_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3
+        ups_S_ddot_in_axes2_z = (
+        axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
+            axis_z_ups_axes2_z*ups_S_ddot_z
+        )
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
+        # (ups-rel) acceleration of the connection point left to the joint accelerations
+        ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
+        # (ups-qdd_1) acceleration of joint 1
+        ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
+        ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
+        ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
+        # (ups-alpha_1) angular acceleration of link 1
+        ups_alpha_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1
+        ups_alpha_1_in_axes2_y = -ups_c_2*ups_qdd_1
+        # (ups-alpha_2) angular acceleration of link 2
+        ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
+        ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
+        # (ups-B_2) acceleration tensor of link 2
+        ups_B_2_in_axes2_xy = ups_W_2_in_axes2_xy - ups_qdd_2
+        ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
+        ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_acc_3_in_axes2_x = ups_S_ddot_in_axes2_x - ups_g_in_axes2_x
+        ups_acc_3_in_axes2_y = ups_S_ddot_in_axes2_y - ups_g_in_axes2_y
+        ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
+        # (ups-phi_3) inertia force of link 3 from its turning about its reference point
+        ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
+        ups_phi_3_in_axes2_x = (
+        ups_phi_3_t + ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z
+        )
+        # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_t_2 = ups_J_group_2_in_axes2_yz*(ups_W_2_t - ups_W_2_t_2)
+        ups_mu_2_t_3 = ups_J_group_2_in_axes2_xz*(ups_mu_2_t - ups_W_2_t_2)
+        ups_mu_2_t_4 = ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_W_2_t)
+        ups_mu_2_t_5 = (
+        ups_g_in_axes2_z*ups_h_group_2_in_axes2_y - ups_g_in_axes2_y*ups_h_group_2_in_axes2_z
+        )
+        ups_mu_2_t_6 = (
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_z - ups_g_in_axes2_z*ups_h_group_2_in_axes2_x
+        )
+        ups_mu_2_t_7 = (
+        ups_g_in_axes2_y*ups_h_group_2_in_axes2_x - ups_g_in_axes2_x*ups_h_group_2_in_axes2_y
+        )
+        ups_mu_2_in_axes2_x = (
+        ups_mu_2_t_2 + ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_xz*ups_qdd_2_t_2 +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x - ups_mu_2_t_5 -
+            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_S_ddot_in_axes2_y*ups_h_3_in_spec2_y - ups_S_ddot_in_axes2_z*ups_h_3_in_spec2_z
+        )
+        ups_mu_2_in_axes2_y = (
+        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy + ups_S_ddot_in_axes2_x*ups_h_3_in_spec2_y +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y - ups_mu_2_t_3 - ups_mu_2_t_6 -
+            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_S_ddot_in_axes2_z*ups_h_3_in_spec2_x
+        )
+        ups_mu_2_in_axes2_z = (
+        ups_mu_2_t_4 + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
+            ups_S_ddot_in_axes2_x*ups_h_3_in_spec2_z + ups_S_ddot_in_axes2_y*ups_h_3_in_spec2_x +
+            ups_Sigma_2_in_axes2_xx*ups_qdd_2_t_2 - ups_mu_2_t_7 -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy
+        )
+        # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_t = ups_h_3_in_spec2_z*(ups_W_2_t_2 + ups_mu_2_t)
+        ups_c_t_2 = ups_h_3_in_spec2_y*(ups_W_2_t + ups_mu_2_t)
+        ups_c_in_axes2_y = (
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - ups_c_t - inv_ups_q_3*ups_mu_2_in_axes2_z -
+            ups_h_3_in_spec2_x*ups_qdd_2_t_2
+        )
+        ups_c_in_axes2_z = (
+        ups_c_t_2 + inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y -
+            ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
+        )
+        # (ups-c_true) leg force on the platform without actuation, the last link's mass included
+        ups_c_true_in_axes2_x = -ups_phi_3_in_axes2_x - ups_acc_3_in_axes2_x*ups_link3_mass
+        ups_c_true_in_axes2_y = ups_c_in_axes2_y - ups_acc_3_in_axes2_y*ups_link3_mass
+        ups_c_true_in_axes2_z = ups_c_in_axes2_z - ups_acc_3_in_axes2_z*ups_link3_mass
+        ups_c_true_x = (
+        axis_x_ups_axes2_x*ups_c_true_in_axes2_x + axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
+            axis_z_ups_axes2_x*ups_c_true_in_axes2_z
+        )
+        ups_c_true_y = (
+        axis_x_ups_axes2_y*ups_c_true_in_axes2_x + axis_y_ups_axes2_y*ups_c_true_in_axes2_y +
+            axis_z_ups_axes2_y*ups_c_true_in_axes2_z
+        )
+        ups_c_true_z = (
+        axis_x_ups_axes2_z*ups_c_true_in_axes2_x + axis_y_ups_axes2_z*ups_c_true_in_axes2_y +
+            axis_z_ups_axes2_z*ups_c_true_in_axes2_z
+        )
+        ok = (
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
+            (abs(ups_q_3) > _TOLERANCE * 1.38293)
+        )
+        # (ups-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
+        out_leg_force[_leg_force_ups[1][leg]] = ups_c_true_y
+        out_leg_force[_leg_force_ups[2][leg]] = ups_c_true_z
+        # (ups-w_3) reciprocal vector 3
+        out_actuator[_actuator_ups[0][leg]] = axis_x_ups_axes2_x
+        out_actuator[_actuator_ups[1][leg]] = axis_x_ups_axes2_y
+        out_actuator[_actuator_ups[2][leg]] = axis_x_ups_axes2_z
+    for leg, k in legs[1]:
+        (
+        tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz, tube_J_group_2_in_axes2_yz,
+            tube_Sigma_2_in_axes2_xx, tube_Sigma_2_in_axes2_yy, tube_Sigma_2_in_axes2_zz,
+            tube_acc_3_t, tube_acc_3_t_2, tube_acc_3_t_3, tube_base_frame_xx, tube_base_frame_xy,
+            tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz,
+            tube_base_frame_zx, tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x,
+            tube_base_point_y, tube_base_point_z, tube_branch_1, tube_branch_2,
+            tube_h_2_in_spec2_x, tube_h_2_in_spec2_y, tube_h_2_in_spec2_z, tube_h_3_in_spec2_x,
+            tube_h_3_in_spec2_y, tube_h_3_in_spec2_z, tube_link3_mass,
+            tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+            tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+            tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+            tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+            tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+            tube_platform_point_z,
+        ) = k
+        # (tube-S) from the base point to the connection point
+        tube_q_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
+        )
+        tube_q_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
+        )
+        tube_q_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
+        )
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
+        tube_S_in_turn1_x = (
+        tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
+        )
+        tube_S_in_turn1_y = (
+        tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
+        )
+        tube_S_in_turn1_z = (
+        tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
+        )
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
+        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
+        # (tube-q_2) displacement of joint 2
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        # (tube-S_dot) velocity of the connection point
+        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
+        axis_y_tube_axes2_x = (
+        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
+            tube_base_frame_xz*tube_c_2
+        )
+        axis_y_tube_axes2_y = (
+        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
+            tube_base_frame_yz*tube_c_2
+        )
+        axis_y_tube_axes2_z = (
+        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
+            tube_base_frame_zz*tube_c_2
+        )
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
+        )
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
+        )
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
+        )
+        tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y
+        tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z
+        tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t_3
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_4
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_5
+        tube_S_dot_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
+            axis_y_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
+            axis_z_tube_axes2_z*tube_S_dot_z
+        )
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
+        tube_n_m1_t_2 = (
+        R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
+        )
+        tube_n_m1_t_3 = (
+        R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx + R_zz*tube_base_frame_zx
+        )
+        tube_n_m1_t_4 = (
+        R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy + R_zx*tube_base_frame_zy
+        )
+        tube_n_m1_t_5 = (
+        R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy + R_zy*tube_base_frame_zy
+        )
+        tube_n_m1_t_6 = (
+        R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy + R_zz*tube_base_frame_zy
+        )
+        tube_n_m1_t_7 = (
+        R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz + R_zx*tube_base_frame_zz
+        )
+        tube_n_m1_t_8 = (
+        R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz + R_zy*tube_base_frame_zz
+        )
+        tube_n_m1_t_9 = (
+        R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
+        )
+        tube_n_m1_t_10 = (
+        tube_n_m1_t*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_yz
+        )
+        tube_n_m1_t_11 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_yz
+        )
+        tube_n_m1_t_12 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
+        )
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
+        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
+        tube_n_m2_t = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_2 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_3 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
+        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
+        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
+        tube_n_m3_t = (
+        tube_n_m1_t*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_xz
+        )
+        tube_n_m3_t_2 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_xz
+        )
+        tube_n_m3_t_3 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
+        )
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
+        # (tube-f_c1) force part of constraint wrench 1
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
+        )
+        # (tube-m1_c1) moment part 1 of constraint wrench 1
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
+        # (tube-m3_c1) moment part 3 of constraint wrench 1
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
+        # (tube-m1_c2) moment part 1 of constraint wrench 2
+        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        # (tube-m3_c2) moment part 3 of constraint wrench 2
+        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
+        # (tube-mu_c1) the moment that goes with it
+        tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
+        tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t
+        tube_mu_c1_in_axes2_z = (
+        -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
+        )
+        tube_mu_c1_x = (
+        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z
+        )
+        tube_mu_c1_y = (
+        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z
+        )
+        tube_mu_c1_z = (
+        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z
+        )
+        # (tube-mu_c2) the moment that goes with it
+        tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t
+        tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2
+        tube_mu_c2_in_axes2_z = (
+        tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
+        )
+        tube_mu_c2_x = (
+        axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_x*tube_mu_c2_t
+        )
+        tube_mu_c2_y = (
+        axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_y*tube_mu_c2_t
+        )
+        tube_mu_c2_z = (
+        axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_z*tube_mu_c2_t
+        )
+        # (tube-size_c3) size of the moment
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
+        # (tube-mu1_c3) moment along direction 1 that goes with it
+        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3
+        # (tube-mu3_c3) moment along direction 3 that goes with it
+        tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
+        # (tube-mu_c3) the moment that goes with it
+        tube_mu_c3_in_axes2_x = (
+        tube_end_p3_in_axes2_z*tube_mu3_c3_t - inv_tube_size_c3*tube_end_p2_in_axes2_y
+        )
+        tube_mu_c3_in_axes2_y = (
+        inv_tube_size_c3*tube_n_m2_in_axes2_y - tube_end_p1_in_axes2_z*tube_mu1_c3
+        )
+        tube_mu_c3_in_axes2_z = (
+        tube_mu1_c3*tube_n_m1_in_axes2_z - tube_mu3_c3_t*tube_n_m3_in_axes2_z
+        )
+        tube_mu_c3_x = (
+        axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z
+        )
+        tube_mu_c3_y = (
+        axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z
+        )
+        tube_mu_c3_z = (
+        axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z
+        )
+        # (tube-w_1) force part of reciprocal wrench 1
+        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
+        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
+        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
+        tube_w_1_t_6 = 1.35*tube_m1_c1_t
+        tube_w_1_t_7 = 1.35*tube_m3_c1_t
+        tube_w_1_t_8 = 1.35*tube_m1_c2_t
+        tube_w_1_t_9 = 1.35*tube_m3_c2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t_11 = 1.35*inv_tube_size_c3
+        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
+        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
+        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
+        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
+        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
+        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
+        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
+        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
+        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
+        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
+        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
+        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
+        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
+        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
+        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
+        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
+        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
+        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
+        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
+        tube_w_1_t_33 = (
+        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
+            tube_w_1_t_20*tube_w_1_t_20)
+        )
+        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
+        tube_w_1_t_37 = (
+        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
+        )
+        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
+        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
+        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
+        tube_w_1_t_41 = (
+        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
+        )
+        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
+        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
+        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
+        tube_w_1_t_45 = (
+        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
+        )
+        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
+        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
+        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
+        tube_w_1_t_49 = (
+        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
+            tube_w_1_t_40*tube_w_1_t_40)
+        )
+        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
+        tube_w_1_t_53 = (
+        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
+        )
+        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
+        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
+        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
+        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
+        tube_w_1_t_58 = (
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
+            - tube_w_1_t_47*tube_w_1_t_51
+        )
+        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
+        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
+        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
+        tube_w_1_t_63 = (
+        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
+            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+            tube_w_1_t_57*tube_w_1_t_57)
+        )
+        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
+        tube_w_1_t_69 = (
+        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
+            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
+        )
+        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
+        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
+        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
+        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
+        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
+        tube_w_1_t_75 = (
+        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
+            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+            tube_w_1_t_74*tube_w_1_t_74)
+        )
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
+        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
+        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
+        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
+        # (tube-eta_1) rate at which the joints turn along moment direction 1
+        tube_omega_in_axes2_y = (
+        axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
+        )
+        tube_omega_in_axes2_z = (
+        axis_z_tube_axes2_x*omega_x + axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z
+        )
+        tube_eta_1 = (
+        tube_n_m1_in_axes2_z*tube_omega_in_axes2_z - tube_end_p1_in_axes2_z*tube_omega_in_axes2_y
+        )
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_omega_in_axes2_x = (
+        axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
+        )
+        tube_eta_2 = (
+        tube_n_m2_in_axes2_y*tube_omega_in_axes2_y - tube_end_p2_in_axes2_y*tube_omega_in_axes2_x
+        )
+        # (tube-eta_3) rate at which the joints turn along moment direction 3
+        tube_eta_3 = (
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
+        )
+        # (tube-qd_1) rate of joint 1
+        tube_qd_1_t = 1.35*tube_eta_1
+        tube_qd_1_t_2 = 1.35*tube_eta_2
+        tube_qd_1_t_3 = 1.35*tube_eta_3
+        tube_qd_1 = (
+        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
+            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
+        )
+        # (tube-qd_2) rate of joint 2
+        tube_qd_2_t = (
+        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
+            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
+        )
+        tube_qd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
+        )
+        tube_qd_2_t_3 = (
+        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
+            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25
+        )
+        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
+        # (tube-omega_1) angular velocity of link 1
+        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
+        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
+        # (tube-W_2) centripetal tensor of link 2
+        tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
+        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
+        tube_W_2_t = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
+        tube_W_2_t_2 = tube_qd_2*tube_qd_2
+        tube_W_2_t_3 = tube_W_2_t + tube_W_2_t_2
+        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
+        # (tube-S_ddot) acceleration of the connection point
+        tube_S_ddot_x = t_ddot_x + B_p_xy*tube_q_y + B_p_xz*tube_q_z - W_p_t_4*tube_q_x
+        tube_S_ddot_y = t_ddot_y + B_p_yx*tube_q_x + B_p_yz*tube_q_z - W_p_t_5*tube_q_y
+        tube_S_ddot_z = t_ddot_z + B_p_zx*tube_q_x + B_p_zy*tube_q_y - W_p_t_6*tube_q_z
+        tube_S_ddot_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
+            axis_x_tube_axes2_z*tube_S_ddot_z
+        )
+        # (tube-bias) acceleration of the connection point at zero joint accelerations
+        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
+        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
+        tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
+        tube_bias_t_4 = tube_bias_t_3*tube_qd_2
+        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
+        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
+        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
+        # (tube-rel) acceleration of the connection point left to the joint accelerations
+        tube_rel_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_ddot_x + axis_y_tube_axes2_y*tube_S_ddot_y +
+            axis_y_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_y
+        )
+        tube_rel_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_ddot_x + axis_z_tube_axes2_y*tube_S_ddot_y +
+            axis_z_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_z
+        )
+        # (tube-nd_m1) rate of moment direction 1
+        tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
+        tube_nd_m1_in_axes2_y = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x
+        )
+        tube_nd_m1_in_axes2_z = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_z - tube_end_p1_in_axes2_x*tube_qd_2 -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
+        )
+        # (tube-nu_1) bias of the angular acceleration along moment direction 1
+        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
+        tube_nu_1_t_4 = (
+        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
+        )
+        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
+        # (tube-nd_m2) rate of moment direction 2
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
+        tube_nd_m2_in_axes2_x = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
+        )
+        tube_nd_m2_in_axes2_y = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y
+        )
+        # (tube-nu_2) bias of the angular acceleration along moment direction 2
+        tube_nu_2_t = (
+        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        )
+        tube_nu_2_t_2 = (
+        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
+        )
+        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
+        # (tube-nd_m3) rate of moment direction 3
+        tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
+        tube_nd_m3_in_axes2_x = (
+        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
+        )
+        tube_nd_m3_in_axes2_z = (
+        tube_end_p3_in_axes2_y*tube_qd_2 + tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z
+        )
+        # (tube-nu_3) bias of the angular acceleration along moment direction 3
+        tube_nu_3_t = (
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
+        )
+        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
+        # (tube-etad_1) acceleration with which the joints turn along moment direction 1
+        tube_alpha_in_axes2_y = (
+        alpha_x*axis_y_tube_axes2_x + alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z
+        )
+        tube_alpha_in_axes2_z = (
+        alpha_x*axis_z_tube_axes2_x + alpha_y*axis_z_tube_axes2_y + alpha_z*axis_z_tube_axes2_z
+        )
+        tube_etad_1_t = (
+        tube_alpha_in_axes2_y*tube_end_p1_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m1_in_axes2_z
+        )
+        tube_etad_1 = tube_nu_1 - tube_etad_1_t
+        # (tube-etad_2) acceleration with which the joints turn along moment direction 2
+        tube_alpha_in_axes2_x = (
+        alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z
+        )
+        tube_etad_2_t = (
+        tube_alpha_in_axes2_x*tube_end_p2_in_axes2_y - tube_alpha_in_axes2_y*tube_n_m2_in_axes2_y
+        )
+        tube_etad_2 = tube_nu_2 - tube_etad_2_t
+        # (tube-etad_3) acceleration with which the joints turn along moment direction 3
+        tube_etad_3_t = (
+        tube_alpha_in_axes2_x*tube_end_p3_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m3_in_axes2_z
+        )
+        tube_etad_3 = tube_nu_3 - tube_etad_3_t
+        # (tube-qdd_1) acceleration of joint 1
+        tube_qdd_1_t = 1.35*tube_etad_1
+        tube_qdd_1_t_2 = 1.35*tube_etad_2
+        tube_qdd_1_t_3 = 1.35*tube_etad_3
+        tube_qdd_1 = (
+        inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_t + tube_m3_w_1_t*tube_qdd_1_t_3 +
+            tube_rel_in_axes2_y*tube_w_1_t_76 + tube_rel_in_axes2_z*tube_w_1_t_77 -
+            tube_m2_w_1_t*tube_qdd_1_t_2)
+        )
+        # (tube-qdd_2) acceleration of joint 2
+        tube_qdd_2_t = (
+        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_2*tube_w_1_t_67 +
+            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
+            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69)
+        )
+        tube_qdd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1*tube_w_1_t_58 +
+            tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_2_t*tube_w_1_t_53
+            + tube_rel_in_axes2_y*tube_w_1_t_50)
+        )
+        tube_qdd_2_t_3 = (
+        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_2_t_2*tube_w_1_t_21 +
+            tube_rel_in_axes2_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
+            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
+            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
+            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25
+        )
+        tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
+        # (tube-alpha_1) angular acceleration of link 1
+        tube_alpha_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qdd_1
+        tube_alpha_1_in_axes2_y = -tube_c_2*tube_qdd_1
+        # (tube-alpha_2) angular acceleration of link 2
+        tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x
+        tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz
+        # (tube-B_2) acceleration tensor of link 2
+        tube_B_2_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2
+        tube_B_2_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2
+        tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y
+        tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x
+        # (tube-acc_3) acceleration of the reference point of link 3, less gravity
+        tube_acc_3_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
+        tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
+        tube_g_in_axes2_x = tube_acc_3_t_3*tube_e_1_in_axes2_x + tube_acc_3_t_4*tube_c_2
+        tube_g_in_axes2_y = tube_acc_3_t_4*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
+        tube_acc_3_in_axes2_x = tube_S_ddot_in_axes2_x - tube_g_in_axes2_x
+        tube_acc_3_in_axes2_y = (
+        tube_bias_t_4 + tube_q_3*tube_qdd_2 - tube_bias_t_2 - tube_g_in_axes2_y
+        )
+        tube_acc_3_in_axes2_z = (
+        tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_in_axes2_y*tube_q_3
+        )
+        # (tube-f_3) inertia force of link 3 less its weight
+        tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
+        tube_f_3_t_2 = tube_W_2_t_3*tube_h_3_in_spec2_x
+        tube_f_3_t_3 = tube_h_3_in_spec2_z*(tube_W_2_t_2 + tube_f_3_t)
+        tube_f_3_t_4 = tube_h_3_in_spec2_y*(tube_W_2_t + tube_f_3_t)
+        tube_f_3_in_axes2_x = (
+        tube_acc_3_in_axes2_x*tube_link3_mass + tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_f_3_t_2 - tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z
+        )
+        tube_f_3_in_axes2_y = (
+        tube_f_3_t_3 + tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x +
+            tube_acc_3_in_axes2_y*tube_link3_mass - tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y
+        )
+        tube_f_3_in_axes2_z = (
+        tube_B_2_in_axes2_zx*tube_h_3_in_spec2_x + tube_acc_3_in_axes2_z*tube_link3_mass -
+            tube_f_3_t_4 - tube_B_2_in_axes2_zy*tube_h_3_in_spec2_z
+        )
+        # (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        tube_mu_2_t = tube_J_group_2_in_axes2_yz*(tube_W_2_t - tube_W_2_t_2)
+        tube_mu_2_t_2 = tube_J_group_2_in_axes2_xz*(tube_f_3_t - tube_W_2_t_2)
+        tube_mu_2_t_3 = tube_J_group_2_in_axes2_xy*(tube_f_3_t - tube_W_2_t)
+        tube_mu_2_t_4 = (
+        tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z
+        )
+        tube_mu_2_t_5 = (
+        tube_g_in_axes2_x*tube_h_2_in_spec2_y - tube_g_in_axes2_z*tube_h_2_in_spec2_x
+        )
+        tube_mu_2_t_6 = (
+        tube_g_in_axes2_x*tube_h_2_in_spec2_z + tube_g_in_axes2_y*tube_h_2_in_spec2_x
+        )
+        tube_mu_2_in_axes2_x = (
+        tube_mu_2_t + tube_mu_2_t_4 + tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
+            tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x -
+            tube_B_2_in_axes2_zx*tube_J_group_2_in_axes2_xy -
+            tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z
+        )
+        tube_mu_2_in_axes2_y = (
+        tube_B_2_in_axes2_zy*tube_J_group_2_in_axes2_xy +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_y +
+            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_y - tube_mu_2_t_2 - tube_mu_2_t_5 -
+            tube_B_2_in_axes2_xy*tube_J_group_2_in_axes2_yz -
+            tube_B_2_in_axes2_zx*tube_Sigma_2_in_axes2_xx -
+            tube_acc_3_in_axes2_z*tube_h_3_in_spec2_x
+        )
+        tube_mu_2_in_axes2_z = (
+        tube_mu_2_t_3 + tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
+            tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
+            tube_J_group_2_in_axes2_yz*tube_alpha_1_in_axes2_y +
+            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_z + tube_acc_3_in_axes2_y*tube_h_3_in_spec2_x
+            - tube_mu_2_t_6 - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy
+        )
+        # (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_q_3
+        tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_q_3
+        # (tube-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z
+        tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17
+        tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 - tube_G_t_2*tube_w_1_t_37)
+        tube_G_t_4 = (
+        inv_tube_w_1_t_63*(tube_G_t_2*tube_w_1_t_41 + tube_G_t_3*tube_w_1_t_53 -
+            tube_G_t*tube_w_1_t_25)
+        )
+        tube_G_t_5 = (
+        inv_tube_w_1_t_75*(tube_G_t*tube_w_1_t_29 + tube_G_t_4*tube_w_1_t_69 +
+            tube_N_2_in_axes2_y*tube_c_2 - tube_G_t_2*tube_w_1_t_45 - tube_G_t_3*tube_w_1_t_58 -
+            tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x)
+        )
+        tube_G_in_axes2_y = (
+        tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 + tube_G_t_3*tube_w_1_t_50 +
+            tube_G_t_4*tube_w_1_t_64 - tube_G_t_5*tube_w_1_t_76
+        )
+        tube_G_in_axes2_z = (
+        inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 - tube_G_t_5*tube_w_1_t_77
+        )
+        # (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
+        tube_G_m1_t = (
+        tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 + tube_G_t_3*tube_w_1_t_51 +
+            tube_G_t_4*tube_w_1_t_66 - tube_G_t_5*tube_m1_w_1_t
+        )
+        tube_G_m1 = 1.35*tube_G_m1_t
+        # (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
+        tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 + tube_G_t_5*tube_m2_w_1_t
+        tube_G_m2 = 1.35*tube_G_m2_t
+        # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
+        tube_G_m3_t = (
+        tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 + tube_G_t_3*tube_w_1_t_52 +
+            tube_G_t_4*tube_w_1_t_68 - tube_G_t_5*tube_m3_w_1_t
         )
         tube_G_m3 = 1.35*tube_G_m3_t
         # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -11289,12 +11560,14 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
+    gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
+        m_star*t_z)
     )
     potential_ups, = [0.0] * 1
     for leg, k in legs[0]:
@@ -11308,18 +11581,18 @@ def _run_potential(m, X):
             ups_platform_point_z, ups_potential_t, ups_potential_t_2, ups_potential_t_3,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_S_x = (
-        t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z -
-            ups_base_point_x
+        ups_q_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_S_y = (
-        t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z -
-            ups_base_point_y
+        ups_q_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_S_z = (
-        t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
-            ups_base_point_z
+        ups_q_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
@@ -11343,26 +11616,29 @@ def _run_potential(m, X):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
-        # (potential) potential energy
+        # (ups-q_2) displacement of joint 2
         ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
-        ups_potential_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_potential_t_5 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
-        ups_potential_t_6 = (
-        (ups_e_1_in_axes2_x*ups_potential_t_4 - ups_acc_3_t_3*ups_c_2)*(ups_h_2_in_spec2_z +
-            ups_h_3_in_spec2_z - ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_5 -
-            ups_c_2*ups_potential_t_3)) - (ups_acc_3_t_2*ups_c_1 -
-            ups_acc_3_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
-            ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1)) -
-            (ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
-            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
-            ups_e_1_in_axes2_x*ups_potential_t_3))
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        # (potential) potential energy
+        ups_potential_t_4 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
+        ups_potential_t_5 = (
+        ups_g_in_axes2_y*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
+            ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_4 - ups_c_2*ups_potential_t_3)) -
+            ups_g_in_axes2_x*(ups_h_2_in_spec2_x + ups_h_3_in_spec2_x +
+            ups_link2_mass*(ups_c_2*ups_potential_t_4 + ups_e_1_in_axes2_x*ups_potential_t_3)) -
+            ups_g_in_axes2_z*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
+            ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1))
         )
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
             _TOLERANCE * _TOLERANCE * 1.9124953849)
         )
         # (potential) potential energy
-        potential_ups += ups_potential_t_6
+        potential_ups += ups_potential_t_5
     potential_tube, = [0.0] * 1
     for leg, k in legs[1]:
         (
@@ -11376,18 +11652,18 @@ def _run_potential(m, X):
             tube_potential_t_2, tube_potential_t_3,
         ) = k
         # (tube-S) from the base point to the connection point
-        tube_S_x = (
-        t_x + R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
-            - tube_base_point_x
+        tube_q_x = (
+        R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        tube_S_y = (
-        t_y + R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
-            - tube_base_point_y
+        tube_q_y = (
+        R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        tube_S_z = (
-        t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
-            - tube_base_point_z
+        tube_q_z = (
+        R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
         tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
@@ -11411,29 +11687,32 @@ def _run_potential(m, X):
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_q_3 = 1.0/tube_q_3
         tube_c_2 = inv_tube_q_3*tube_root_1
-        # (potential) potential energy
+        # (tube-q_2) displacement of joint 2
         tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
-        tube_potential_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
-        tube_potential_t_5 = tube_c_1*tube_potential_t + tube_potential_t_2*tube_s_1
+        # (tube-acc_3) acceleration of the reference point of link 3, less gravity
+        tube_acc_3_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
+        tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
+        tube_g_in_axes2_x = tube_acc_3_t_3*tube_e_1_in_axes2_x + tube_acc_3_t_4*tube_c_2
+        tube_g_in_axes2_y = tube_acc_3_t_4*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
+        # (potential) potential energy
+        tube_potential_t_4 = tube_c_1*tube_potential_t + tube_potential_t_2*tube_s_1
         tube_b_in_spec2_y = tube_c_1*tube_potential_t_2 - tube_potential_t*tube_s_1
-        tube_b_in_spec2_x = tube_c_2*tube_potential_t_5 + tube_e_1_in_axes2_x*tube_potential_t_3
-        tube_b_in_spec2_z = tube_c_2*tube_potential_t_3 - tube_e_1_in_axes2_x*tube_potential_t_5
-        tube_potential_t_6 = (
-        (tube_e_1_in_axes2_x*tube_potential_t_4 - tube_acc_3_t_3*tube_c_2)*(tube_h_2_in_spec2_z +
-            tube_h_3_in_spec2_z + tube_b_in_spec2_z*tube_link2_mass +
-            tube_b_in_spec2_z*tube_link3_mass) - (tube_acc_3_t_2*tube_c_1 -
-            tube_acc_3_t*tube_s_1)*(tube_h_2_in_spec2_y + tube_h_3_in_spec2_y +
-            tube_b_in_spec2_y*tube_link2_mass + tube_b_in_spec2_y*tube_link3_mass) -
-            (tube_acc_3_t_3*tube_e_1_in_axes2_x +
-            tube_c_2*tube_potential_t_4)*(tube_h_2_in_spec2_x + tube_h_3_in_spec2_x +
-            tube_b_in_spec2_x*tube_link2_mass + tube_link3_mass*(tube_b_in_spec2_x + tube_q_3))
+        tube_b_in_spec2_x = tube_c_2*tube_potential_t_4 + tube_e_1_in_axes2_x*tube_potential_t_3
+        tube_b_in_spec2_z = tube_c_2*tube_potential_t_3 - tube_e_1_in_axes2_x*tube_potential_t_4
+        tube_potential_t_5 = (
+        tube_g_in_axes2_y*(tube_h_2_in_spec2_z + tube_h_3_in_spec2_z +
+            tube_b_in_spec2_z*tube_link2_mass + tube_b_in_spec2_z*tube_link3_mass) -
+            tube_g_in_axes2_x*(tube_h_2_in_spec2_x + tube_h_3_in_spec2_x +
+            tube_b_in_spec2_x*tube_link2_mass + tube_link3_mass*(tube_b_in_spec2_x + tube_q_3)) -
+            tube_g_in_axes2_z*(tube_h_2_in_spec2_y + tube_h_3_in_spec2_y +
+            tube_b_in_spec2_y*tube_link2_mass + tube_b_in_spec2_y*tube_link3_mass)
         )
         ok = (
         ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002)
         )
         # (potential) potential energy
-        potential_tube += tube_potential_t_6
+        potential_tube += tube_potential_t_5
     # (potential) potential energy
     potential = potential_tube + potential_ups - potential_t
     # (potential) potential energy
@@ -11528,12 +11807,12 @@ def _run_condition(m, X):
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-w_2) reciprocal vector 2
-        ups_w_2_in_axes2_y = 1.0/ups_q_3
-        # (ups-w_3) reciprocal vector 3
-        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
-        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
-        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_q_3 = 1.0/ups_q_3
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         ups_pivot_size = abs(ups_root_1_t)
         ups_pivot_size_2 = abs(ups_q_3_t)
@@ -11545,9 +11824,9 @@ def _run_condition(m, X):
             0.7231023985306559*ups_pivot_size_4)
         )
         # (ups-H_a_3) moment of the column's unit force about the platform origin
-        ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y
-        ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z
-        ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x
+        ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z
+        ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
+        ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         # (spread) rms distance of the platform points from their centroid
         ups_spread_t = b_c_in_platform_x - ups_platform_point_x
         ups_spread_t_2 = b_c_in_platform_y - ups_platform_point_y
@@ -11563,9 +11842,9 @@ def _run_condition(m, X):
         # (spread) rms distance of the platform points from their centroid
         spread_ups += ups_spread_t_4
         # (ups-w_3) reciprocal vector 3
-        out_H[_H_ups[0][leg]] = ups_w_3_x
-        out_H[_H_ups[1][leg]] = ups_w_3_y
-        out_H[_H_ups[2][leg]] = ups_w_3_z
+        out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
+        out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
+        out_H[_H_ups[2][leg]] = axis_x_ups_axes2_z
         # (ups-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
@@ -11621,8 +11900,36 @@ def _run_condition(m, X):
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_q_3 = 1.0/tube_q_3
         tube_c_2 = inv_tube_q_3*tube_root_1
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        # (tube-q_2) displacement of joint 2
         tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        # (tube-S_dot) velocity of the connection point
+        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
+        axis_y_tube_axes2_x = (
+        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
+            tube_base_frame_xz*tube_c_2
+        )
+        axis_y_tube_axes2_y = (
+        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
+            tube_base_frame_yz*tube_c_2
+        )
+        axis_y_tube_axes2_z = (
+        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
+            tube_base_frame_zz*tube_c_2
+        )
+        axis_x_tube_axes2_x = (
+        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
+        )
+        axis_x_tube_axes2_y = (
+        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
+        )
+        axis_x_tube_axes2_z = (
+        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
+        )
+        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
         R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
@@ -11658,31 +11965,35 @@ def _run_condition(m, X):
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
-        tube_n_m1_in_axes2_z = (
-        tube_e_1_in_axes2_x*(tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1) -
-            tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        tube_n_m1_t_12 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz)
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
         tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
+        tube_n_m1_t*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_2 = (
+        tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz
+        )
+        tube_n_m2_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_n_m2_t_2 = (
-        tube_c_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
-            tube_s_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz)
-        )
-        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_2 + tube_e_1_in_axes2_x*tube_n_m2_t
-        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_2 - tube_c_2*tube_n_m2_t
-        tube_n_m2_t_3 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
+        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
@@ -11694,21 +12005,22 @@ def _run_condition(m, X):
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
-        tube_n_m3_in_axes2_z = (
-        tube_c_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1) +
-            tube_e_1_in_axes2_x*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        tube_n_m3_t_3 = (
+        tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz)
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_n_m3_t_3 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
-        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
         # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_q_3
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
         # (tube-m3_c1) moment part 3 of constraint wrench 1
         tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
         # (tube-m1_c2) moment part 1 of constraint wrench 2
@@ -11716,39 +12028,44 @@ def _run_condition(m, X):
         # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
         # (tube-m1_c3) moment part 1 of constraint wrench 3
-        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3
-        # (tube-n_c1) unit force of the constraint wrench
-        tube_n_c1_t = tube_c_1*tube_e_1_in_axes2_x
-        tube_n_c1_t_2 = tube_e_1_in_axes2_x*tube_s_1
-        tube_n_c1_x = (
-        tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xy*tube_n_c1_t_2 -
-            tube_base_frame_xz*tube_c_2
-        )
-        tube_n_c1_y = (
-        tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yy*tube_n_c1_t_2 -
-            tube_base_frame_yz*tube_c_2
-        )
-        tube_n_c1_z = (
-        tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zy*tube_n_c1_t_2 -
-            tube_base_frame_zz*tube_c_2
-        )
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
         # (tube-mu_c1) the moment that goes with it
         tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
         tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t
         tube_mu_c1_in_axes2_z = (
         -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
         )
-        # (tube-n_c2) unit force of the constraint wrench
-        tube_n_c2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
-        tube_n_c2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
-        tube_n_c2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_mu_c1_x = (
+        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z
+        )
+        tube_mu_c1_y = (
+        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z
+        )
+        tube_mu_c1_z = (
+        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z
+        )
         # (tube-mu_c2) the moment that goes with it
         tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t
         tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2
         tube_mu_c2_in_axes2_z = (
         tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
+        )
+        tube_mu_c2_x = (
+        axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_x*tube_mu_c2_t
+        )
+        tube_mu_c2_y = (
+        axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_y*tube_mu_c2_t
+        )
+        tube_mu_c2_z = (
+        axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_z*tube_mu_c2_t
         )
         # (tube-size_c3) size of the moment
         tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
@@ -11758,9 +12075,6 @@ def _run_condition(m, X):
         # (tube-mu3_c3) moment along direction 3 that goes with it
         tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-mu_c3) the moment that goes with it
-        axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y
-        axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z
-        axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x
         tube_mu_c3_in_axes2_x = (
         tube_end_p3_in_axes2_z*tube_mu3_c3_t - inv_tube_size_c3*tube_end_p2_in_axes2_y
         )
@@ -11771,21 +12085,21 @@ def _run_condition(m, X):
         tube_mu1_c3*tube_n_m1_in_axes2_z - tube_mu3_c3_t*tube_n_m3_in_axes2_z
         )
         tube_mu_c3_x = (
-        axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_x +
-            tube_mu_c3_in_axes2_z*tube_n_c2_x
+        axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z
         )
         tube_mu_c3_y = (
-        axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_y +
-            tube_mu_c3_in_axes2_z*tube_n_c2_y
+        axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z
         )
         tube_mu_c3_z = (
-        axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_z +
-            tube_mu_c3_in_axes2_z*tube_n_c2_z
+        axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z
         )
         # (tube-w_1) force part of reciprocal wrench 1
         tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_3
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_3
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
         tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
         tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
         tube_w_1_t_6 = 1.35*tube_m1_c1_t
@@ -11906,31 +12220,13 @@ def _run_condition(m, X):
             0.7407407407407407*tube_pivot_size_8), 0.7407407407407407*tube_pivot_size_9)
         )
         # (tube-Hk_a_1) moment of the column's unit force about the platform origin
-        tube_Hk_a_1_x = (
-        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*tube_n_c1_x +
-            tube_mu_c1_in_axes2_z*tube_n_c2_x + tube_n_c1_z*tube_q_y - tube_n_c1_y*tube_q_z
-        )
-        tube_Hk_a_1_y = (
-        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*tube_n_c1_y +
-            tube_mu_c1_in_axes2_z*tube_n_c2_y + tube_n_c1_x*tube_q_z - tube_n_c1_z*tube_q_x
-        )
-        tube_Hk_a_1_z = (
-        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*tube_n_c1_z +
-            tube_mu_c1_in_axes2_z*tube_n_c2_z + tube_n_c1_y*tube_q_x - tube_n_c1_x*tube_q_y
-        )
+        tube_Hk_a_1_x = tube_mu_c1_x + axis_y_tube_axes2_z*tube_q_y - axis_y_tube_axes2_y*tube_q_z
+        tube_Hk_a_1_y = tube_mu_c1_y + axis_y_tube_axes2_x*tube_q_z - axis_y_tube_axes2_z*tube_q_x
+        tube_Hk_a_1_z = tube_mu_c1_z + axis_y_tube_axes2_y*tube_q_x - axis_y_tube_axes2_x*tube_q_y
         # (tube-Hk_a_2) moment of the column's unit force about the platform origin
-        tube_Hk_a_2_x = (
-        tube_mu_c2_in_axes2_y*tube_n_c1_x + tube_mu_c2_in_axes2_z*tube_n_c2_x +
-            tube_n_c2_z*tube_q_y - axis_x_tube_axes2_x*tube_mu_c2_t - tube_n_c2_y*tube_q_z
-        )
-        tube_Hk_a_2_y = (
-        tube_mu_c2_in_axes2_y*tube_n_c1_y + tube_mu_c2_in_axes2_z*tube_n_c2_y +
-            tube_n_c2_x*tube_q_z - axis_x_tube_axes2_y*tube_mu_c2_t - tube_n_c2_z*tube_q_x
-        )
-        tube_Hk_a_2_z = (
-        tube_mu_c2_in_axes2_y*tube_n_c1_z + tube_mu_c2_in_axes2_z*tube_n_c2_z +
-            tube_n_c2_y*tube_q_x - axis_x_tube_axes2_z*tube_mu_c2_t - tube_n_c2_x*tube_q_y
-        )
+        tube_Hk_a_2_x = tube_mu_c2_x + axis_z_tube_axes2_z*tube_q_y - axis_z_tube_axes2_y*tube_q_z
+        tube_Hk_a_2_y = tube_mu_c2_y + axis_z_tube_axes2_x*tube_q_z - axis_z_tube_axes2_z*tube_q_x
+        tube_Hk_a_2_z = tube_mu_c2_z + axis_z_tube_axes2_y*tube_q_x - axis_z_tube_axes2_x*tube_q_y
         # (spread) rms distance of the platform points from their centroid
         tube_spread_t = b_c_in_platform_x - tube_platform_point_x
         tube_spread_t_2 = b_c_in_platform_y - tube_platform_point_y
@@ -11950,17 +12246,17 @@ def _run_condition(m, X):
         # (spread) rms distance of the platform points from their centroid
         spread_tube += tube_spread_t_4
         # (tube-n_c1) unit force of the constraint wrench
-        out_Hk[_Hk_tube[0][leg]] = tube_n_c1_x
-        out_Hk[_Hk_tube[1][leg]] = tube_n_c1_y
-        out_Hk[_Hk_tube[2][leg]] = tube_n_c1_z
+        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_x
+        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_y
+        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_z
         # (tube-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
         out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
         out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
         # (tube-n_c2) unit force of the constraint wrench
-        out_Hk[_Hk_tube[6][leg]] = tube_n_c2_x
-        out_Hk[_Hk_tube[7][leg]] = tube_n_c2_y
-        out_Hk[_Hk_tube[8][leg]] = tube_n_c2_z
+        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_x
+        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_y
+        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_z
         # (tube-Hk_a_2) moment of the column's unit force about the platform origin
         out_Hk[_Hk_tube[9][leg]] = tube_Hk_a_2_x
         out_Hk[_Hk_tube[10][leg]] = tube_Hk_a_2_y
@@ -12223,14 +12519,14 @@ def _steps_force_distribution(m, X, V, A, tau_min, tau_max, wrench, reference):
     return (tau, lambda_,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_2 = q[[2, 5, 8, 11]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_2
     constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_1 = -constraints
-    gap = np.concatenate((subtract_1, negative_1))
-    return (gap,)
+    residual = np.concatenate((subtract_1, negative_1))
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -12241,14 +12537,14 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 
-def _steps_constraint_gap(m, X):
+def _steps_constraint_residual(m, X):
     constraints, = m.run(_run_constraints, ("constraints",), X)
-    gap = -constraints
-    return (gap,)
+    residual = -constraints
+    return (residual,)
 
 
 def _steps_constraint_slope(m, X):
@@ -12257,7 +12553,7 @@ def _steps_constraint_slope(m, X):
 
 
 def _steps_project(m, X):
-    projected = _search(m, _steps_constraint_gap, _steps_constraint_slope, X, (), (), False)
+    projected = _search(m, _steps_constraint_residual, _steps_constraint_slope, X, (), (), False)
     return (projected,)
 
 

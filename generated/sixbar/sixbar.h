@@ -188,7 +188,7 @@ int sixbar_inverse_kinematics(const sixbar_model *model, const sixbar_real *X, s
 size_t sixbar_inverse_kinematics_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
     sixbar_real *q, int *status);
 
-/* Rates of all joints. 106 mul, 56 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 108 mul, 56 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int sixbar_joint_rates(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
     sixbar_real *rates);
@@ -318,7 +318,7 @@ int sixbar_actuator_positions(const sixbar_model *model, const sixbar_real *X, s
 size_t sixbar_actuator_positions_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
     sixbar_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 106 mul, 56 add, 4 div, 2 sqrt, 0 trig. In:
+/* Rates of the actuated joints, in the order of tau. 108 mul, 56 add, 4 div, 2 sqrt, 0 trig. In:
    X (NQ), V (NV). Out: rates (NU). */
 int sixbar_actuator_rates(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
     sixbar_real *rates);

@@ -1663,11 +1663,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1890,8 +1890,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1899,7 +1899,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1907,11 +1907,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1993,9 +1993,12 @@ def _run_dynamics(m, X, V):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
+    # (f_p) inertia force of the platform less its weight
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = W_p_xx*h_star_y
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = W_p_xx*h_star_x - Z_p_t
-    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
+    Z_p_x = f_p_t - Z_p_t
+    Z_p_y = f_p_t_2 - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     (
@@ -2105,13 +2108,15 @@ def _run_dynamics(m, X, V):
         rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
             axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)
         )
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_2 = (
+        rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+        )
         # (rrr_leg1-W_1) centripetal tensor of link 1
         rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = (
-        rrr_leg1_qd_1 + rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
-        )
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-u_1) centripetal acceleration of the connection point
@@ -2124,15 +2129,14 @@ def _run_dynamics(m, X, V):
         axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_x - axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_t
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_in_axes2_y = rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
         rrr_leg1_bias_in_axes2_x = (
         -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
             rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
         )
         # (rrr_leg1-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x - rrr_leg1_bias_in_axes2_x
-        rrr_leg1_rel_o_in_axes2_y = (
-        rrr_leg1_u_1_in_axes2_y - rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
-        )
+        rrr_leg1_rel_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y - rrr_leg1_bias_in_axes2_y
         # (rrr_leg1-B_1_o) remainder of the acceleration tensor of link 1
         rrr_leg1_B_1_o_in_axes1_xy = -rrr_leg1_rel_o_in_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2
@@ -2140,15 +2144,16 @@ def _run_dynamics(m, X, V):
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_o_in_axes2_y +
             rrr_leg1_B_1_o_in_axes1_xy*rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_o_in_axes1_xy
         )
+        # (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_leg1_g_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*gravity_x - axis_y_rrr_leg1_axes2_x*gravity_y
+        )
+        rrr_leg1_g_in_axes2_y = (
+        axis_x_rrr_leg1_axes2_x*gravity_y + axis_y_rrr_leg1_axes2_x*gravity_x
+        )
         # (rrr_leg1-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rrr_leg1_acc_2_o_in_axes2_x = (
-        rrr_leg1_u_1_in_axes2_x + axis_y_rrr_leg1_axes2_x*gravity_y -
-            axis_x_rrr_leg1_axes2_x*gravity_x
-        )
-        rrr_leg1_acc_2_o_in_axes2_y = (
-        rrr_leg1_u_1_in_axes2_y - axis_x_rrr_leg1_axes2_x*gravity_y -
-            axis_y_rrr_leg1_axes2_x*gravity_x
-        )
+        rrr_leg1_acc_2_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x - rrr_leg1_g_in_axes2_x
+        rrr_leg1_acc_2_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y - rrr_leg1_g_in_axes2_y
         # (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_leg1_mu_2_o_in_axes2_z = (
         rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_o_in_axes2_z +
@@ -2161,12 +2166,16 @@ def _run_dynamics(m, X, V):
         rrr_leg1_w_1_in_axes2_x*(rrr_leg1_J_2_in_spec2_zz - rrr_leg1_d_Gamma_2_t_2) -
             rrr_leg1_h_2_in_spec2_y
         )
+        # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
+        rrr_leg1_g_in_axes1_y = rrr_leg1_c_1*rrr_leg1_mu_1_t_2 - rrr_leg1_mu_1_t*rrr_leg1_s_1
+        rrr_leg1_mu_1_t_3 = (
+        rrr_leg1_g_in_axes1_y*rrr_leg1_h_1_in_spec1_x -
+            rrr_leg1_g_in_axes1_x*rrr_leg1_h_1_in_spec1_y
+        )
         # (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrr_leg1_mu_1_o_in_axes1_z = (
-        rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1) -
-            rrr_leg1_B_1_o_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz -
-            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1)
+        -rrr_leg1_mu_1_t_3 - rrr_leg1_B_1_o_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz
         )
         # (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z + rrr_leg1_mu_2_o_in_axes2_z
@@ -2177,6 +2186,9 @@ def _run_dynamics(m, X, V):
         )
         # (rrr_leg1-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_leg1_G_o_in_axes2_y = rrr_leg1_mu_2_o_in_axes2_z*rrr_leg1_w_2_in_axes2_y
+        # (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_c_t = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x
+        rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         # (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_d_c_in_axes2_xy = (
         rrr_leg1_d_phi_2_t - rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_1_in_axes2_x -
@@ -2184,13 +2196,12 @@ def _run_dynamics(m, X, V):
         )
         # (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_c_o_in_axes2_x = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+        rrr_leg1_c_t + rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
             rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_o_in_axes1_z)
         )
         rrr_leg1_c_o_in_axes2_y = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y - rrr_leg1_G_o_in_axes2_y -
+        rrr_leg1_c_t_2 - rrr_leg1_G_o_in_axes2_y -
             rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_x
         )
         # (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there
@@ -2329,13 +2340,15 @@ def _run_dynamics(m, X, V):
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -2344,12 +2357,13 @@ def _run_dynamics(m, X, V):
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
@@ -2357,13 +2371,12 @@ def _run_dynamics(m, X, V):
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_in_axes2_x = (
-        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_o_in_axes2_y = (
-        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
@@ -2374,12 +2387,12 @@ def _run_dynamics(m, X, V):
         rrr_d_Gamma_2_in_axes2_x = (
         rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = -rrr_mu_1_t_3 - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
@@ -2388,6 +2401,9 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
         rrr_d_phi_2_t - rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
@@ -2395,12 +2411,11 @@ def _run_dynamics(m, X, V):
         )
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_Q_t = (
@@ -2575,6 +2590,14 @@ def _run_M(m, X):
         rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
         )
         # (rrr_leg1-w_1) reciprocal vector 1
+        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        axis_y_rrr_leg1_axes2_x = (
+        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        )
+        axis_x_rrr_leg1_axes2_x = (
+        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        )
         rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
@@ -2597,31 +2620,23 @@ def _run_M(m, X):
             rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_leg1_Q_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_Q_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
-        axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_Q_t_2*rrr_leg1_base_frame_xy - rrr_leg1_Q_t*rrr_leg1_base_frame_xx
-        )
-        axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_Q_t_2*rrr_leg1_base_frame_yy - rrr_leg1_Q_t*rrr_leg1_base_frame_yx
-        )
-        rrr_leg1_Q_t_3 = (
+        rrr_leg1_Q_t = (
         rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_1_in_axes2_x + rrr_leg1_w_2_in_axes2_x) -
             rrr_leg1_d_c_in_axes2_yy - rrr_leg1_d_Gamma_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x -
             rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
-        rrr_leg1_Q_t_4 = 0.5*rrr_leg1_Q_t_3
-        rrr_leg1_Q_t_5 = (
-        axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 + axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy
+        rrr_leg1_Q_t_2 = 0.5*rrr_leg1_Q_t
+        rrr_leg1_Q_t_3 = (
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 + axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy
         )
-        rrr_leg1_Q_t_6 = (
-        axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 - axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy
+        rrr_leg1_Q_t_4 = (
+        axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 - axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy
         )
-        rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_5
+        rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3
         rrr_leg1_Q_xy = (
-        axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_6 + axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_5
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 + axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3
         )
-        rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_6
+        rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4
         # (M_ta) coupling block of M
         rrr_leg1_M_ta_t = rrr_leg1_Q_xy*rrr_leg1_q_x - rrr_leg1_Q_xx*rrr_leg1_q_y
         rrr_leg1_M_ta_t_2 = rrr_leg1_Q_yy*rrr_leg1_q_x - rrr_leg1_Q_xy*rrr_leg1_q_y
@@ -2688,6 +2703,10 @@ def _run_M(m, X):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
@@ -2706,21 +2725,17 @@ def _run_M(m, X):
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx
-        axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx
-        rrr_Q_t_3 = (
+        rrr_Q_t = (
         rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) - rrr_d_c_in_axes2_yy -
             rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
             rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
         )
-        rrr_Q_t_4 = 0.5*rrr_Q_t_3
-        rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
-        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5
-        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_6
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
         # (M_ta) coupling block of M
         rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
         rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
@@ -2792,9 +2807,12 @@ def _run_Z(m, X, V):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
+    # (f_p) inertia force of the platform less its weight
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = W_p_xx*h_star_y
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = W_p_xx*h_star_x - Z_p_t
-    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
+    Z_p_x = f_p_t - Z_p_t
+    Z_p_y = f_p_t_2 - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     Z_t_rrr_leg1_x, Z_t_rrr_leg1_y, Z_a_rrr_leg1_z = [0.0] * 3
@@ -2871,27 +2889,29 @@ def _run_Z(m, X, V):
         rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
         )
         # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_qd_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_qd_1_t
+        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_qd_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_qd_1_t
+        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
         )
+        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        # (rrr_leg1-qd_1) rate of joint 1
         rrr_leg1_qd_1 = (
         rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
             axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)
         )
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_2 = (
+        rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+        )
         # (rrr_leg1-W_1) centripetal tensor of link 1
         rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = (
-        rrr_leg1_qd_1 + rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
-        )
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-u_1) centripetal acceleration of the connection point
@@ -2904,15 +2924,14 @@ def _run_Z(m, X, V):
         axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_x - axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_t
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_in_axes2_y = rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
         rrr_leg1_bias_in_axes2_x = (
         -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
             rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
         )
         # (rrr_leg1-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x - rrr_leg1_bias_in_axes2_x
-        rrr_leg1_rel_o_in_axes2_y = (
-        rrr_leg1_u_1_in_axes2_y - rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
-        )
+        rrr_leg1_rel_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y - rrr_leg1_bias_in_axes2_y
         # (rrr_leg1-B_1_o) remainder of the acceleration tensor of link 1
         rrr_leg1_B_1_o_in_axes1_xy = -rrr_leg1_rel_o_in_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2
@@ -2920,41 +2939,48 @@ def _run_Z(m, X, V):
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_o_in_axes2_y +
             rrr_leg1_B_1_o_in_axes1_xy*rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_o_in_axes1_xy
         )
+        # (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_leg1_g_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*gravity_x - axis_y_rrr_leg1_axes2_x*gravity_y
+        )
+        rrr_leg1_g_in_axes2_y = (
+        axis_x_rrr_leg1_axes2_x*gravity_y + axis_y_rrr_leg1_axes2_x*gravity_x
+        )
         # (rrr_leg1-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rrr_leg1_acc_2_o_in_axes2_x = (
-        rrr_leg1_u_1_in_axes2_x + axis_y_rrr_leg1_axes2_x*gravity_y -
-            axis_x_rrr_leg1_axes2_x*gravity_x
-        )
-        rrr_leg1_acc_2_o_in_axes2_y = (
-        rrr_leg1_u_1_in_axes2_y - axis_x_rrr_leg1_axes2_x*gravity_y -
-            axis_y_rrr_leg1_axes2_x*gravity_x
-        )
+        rrr_leg1_acc_2_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x - rrr_leg1_g_in_axes2_x
+        rrr_leg1_acc_2_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y - rrr_leg1_g_in_axes2_y
         # (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_leg1_mu_2_o_in_axes2_z = (
         rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_o_in_axes2_z +
             rrr_leg1_acc_2_o_in_axes2_y*rrr_leg1_h_2_in_spec2_x -
             rrr_leg1_acc_2_o_in_axes2_x*rrr_leg1_h_2_in_spec2_y
         )
+        # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
+        rrr_leg1_g_in_axes1_y = rrr_leg1_c_1*rrr_leg1_mu_1_t_2 - rrr_leg1_mu_1_t*rrr_leg1_s_1
+        rrr_leg1_mu_1_t_3 = (
+        rrr_leg1_g_in_axes1_y*rrr_leg1_h_1_in_spec1_x -
+            rrr_leg1_g_in_axes1_x*rrr_leg1_h_1_in_spec1_y
+        )
         # (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrr_leg1_mu_1_o_in_axes1_z = (
-        rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1) -
-            rrr_leg1_B_1_o_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz -
-            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1)
+        -rrr_leg1_mu_1_t_3 - rrr_leg1_B_1_o_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz
         )
         # (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z + rrr_leg1_mu_2_o_in_axes2_z
         # (rrr_leg1-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_leg1_G_o_in_axes2_y = rrr_leg1_mu_2_o_in_axes2_z*rrr_leg1_w_2_in_axes2_y
+        # (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_c_t = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x
+        rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         # (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_c_o_in_axes2_x = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+        rrr_leg1_c_t + rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
             rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_o_in_axes1_z)
         )
         rrr_leg1_c_o_in_axes2_y = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y - rrr_leg1_G_o_in_axes2_y -
+        rrr_leg1_c_t_2 - rrr_leg1_G_o_in_axes2_y -
             rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_x
         )
         # (rrr_leg1-U) velocity and gravity terms of the leg force
@@ -3030,22 +3056,24 @@ def _run_Z(m, X, V):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
+        )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
         )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -3054,12 +3082,13 @@ def _run_Z(m, X, V):
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
@@ -3067,36 +3096,37 @@ def _run_Z(m, X, V):
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
         # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_in_axes2_x = (
-        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_o_in_axes2_y = (
-        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
         # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_mu_1_o_in_axes1_z = -rrr_mu_1_t_3 - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz
         # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-U) velocity and gravity terms of the leg force
         rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
@@ -3200,6 +3230,9 @@ def _run_H(m, X):
         rrr_leg1_r_1_in_axes1_x = (
         rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
         )
+        rrr_leg1_r_1_in_axes2_x = (
+        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
+        )
         rrr_leg1_r_1_in_axes2_y = (
         rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
         )
@@ -3217,8 +3250,7 @@ def _run_H(m, X):
         rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y*(rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2)
+        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -3285,20 +3317,17 @@ def _run_H(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = (
-        rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
@@ -3354,8 +3383,10 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     # (f_p) inertia force of the platform less its weight
-    f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y
-    f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x
+    f_p_t = W_p_xx*h_star_x
+    f_p_t_2 = W_p_xx*h_star_y
+    f_p_x = f_p_t + a_t_x*m_star - alpha_z*h_star_y
+    f_p_y = f_p_t_2 + a_t_y*m_star + alpha_z*h_star_x
     # (mu_p) inertia moment of the platform less that of its weight
     mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_a_rrr_leg1_z = [0.0] * 3
@@ -3460,21 +3491,26 @@ def _run_required(m, X, V, A):
         rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
             axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)
         )
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_2 = (
+        rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+        )
         # (rrr_leg1-W_1) centripetal tensor of link 1
         rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = (
-        rrr_leg1_qd_1 + rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
-        )
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
+        # (rrr_leg1-u_1) centripetal acceleration of the connection point
+        rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_2
+        rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t
         # (rrr_leg1-a_p) acceleration of the connection point without its centripetal part
         rrr_leg1_a_p_x = t_ddot_x - alpha_z*rrr_leg1_q_y
         rrr_leg1_a_p_y = t_ddot_y + alpha_z*rrr_leg1_q_x
         # (rrr_leg1-S_ddot) acceleration of the connection point
-        rrr_leg1_S_ddot_x = rrr_leg1_a_p_x - omega_z*rrr_leg1_S_dot_t_2
-        rrr_leg1_S_ddot_y = rrr_leg1_a_p_y - omega_z*rrr_leg1_S_dot_t
+        rrr_leg1_S_ddot_x = rrr_leg1_a_p_x + rrr_leg1_u_1_x
+        rrr_leg1_S_ddot_y = rrr_leg1_a_p_y - rrr_leg1_u_1_t
         rrr_leg1_S_ddot_in_axes2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x - axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y
         )
@@ -3482,31 +3518,32 @@ def _run_required(m, X, V, A):
         axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y + axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_in_axes2_y = rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
         rrr_leg1_bias_in_axes2_x = (
         -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
             rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
-        rrr_leg1_rel_in_axes2_y = (
-        rrr_leg1_S_ddot_in_axes2_y - rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-B_1) acceleration tensor of link 1
-        rrr_leg1_B_1_in_axes1_xy = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
-        # (rrr_leg1-alpha_2) angular acceleration of link 2
-        rrr_leg1_alpha_2_in_axes2_z = (
+        rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y - rrr_leg1_bias_in_axes2_y
+        # (rrr_leg1-qdd_1) acceleration of joint 1
+        rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        # (rrr_leg1-qdd_2) acceleration of joint 2
+        rrr_leg1_qdd_2 = (
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y +
-            rrr_leg1_B_1_in_axes1_xy*rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy
+            rrr_leg1_qdd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
+        # (rrr_leg1-alpha_2) angular acceleration of link 2
+        rrr_leg1_alpha_2_in_axes2_z = rrr_leg1_qdd_2 - rrr_leg1_qdd_1_t
         # (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_leg1_acc_2_in_axes2_x = (
-        rrr_leg1_S_ddot_in_axes2_x + axis_y_rrr_leg1_axes2_x*gravity_y -
-            axis_x_rrr_leg1_axes2_x*gravity_x
+        rrr_leg1_g_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*gravity_x - axis_y_rrr_leg1_axes2_x*gravity_y
         )
-        rrr_leg1_acc_2_in_axes2_y = (
-        rrr_leg1_S_ddot_in_axes2_y - axis_x_rrr_leg1_axes2_x*gravity_y -
-            axis_y_rrr_leg1_axes2_x*gravity_x
+        rrr_leg1_g_in_axes2_y = (
+        axis_x_rrr_leg1_axes2_x*gravity_y + axis_y_rrr_leg1_axes2_x*gravity_x
         )
+        rrr_leg1_acc_2_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_g_in_axes2_x
+        rrr_leg1_acc_2_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y - rrr_leg1_g_in_axes2_y
         # (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_leg1_mu_2_in_axes2_z = (
         rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_in_axes2_z +
@@ -3514,25 +3551,27 @@ def _run_required(m, X, V, A):
             rrr_leg1_acc_2_in_axes2_x*rrr_leg1_h_2_in_spec2_y
         )
         # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_leg1_mu_1_in_axes1_z = (
-        rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1) -
-            rrr_leg1_B_1_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz -
-            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1)
+        rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
+        rrr_leg1_g_in_axes1_y = rrr_leg1_c_1*rrr_leg1_mu_1_t_2 - rrr_leg1_mu_1_t*rrr_leg1_s_1
+        rrr_leg1_mu_1_t_3 = (
+        rrr_leg1_g_in_axes1_y*rrr_leg1_h_1_in_spec1_x -
+            rrr_leg1_g_in_axes1_x*rrr_leg1_h_1_in_spec1_y
         )
+        rrr_leg1_mu_1_in_axes1_z = -rrr_leg1_mu_1_t_3 - rrr_leg1_J_1_in_spec1_zz*rrr_leg1_qdd_1_t
         # (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z
         # (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_leg1_G_in_axes2_y = rrr_leg1_mu_2_in_axes2_z*rrr_leg1_w_2_in_axes2_y
         # (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_c_t = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x
+        rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         rrr_leg1_c_in_axes2_x = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+        rrr_leg1_c_t + rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
             rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_in_axes1_z)
         )
         rrr_leg1_c_in_axes2_y = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y - rrr_leg1_G_in_axes2_y -
+        rrr_leg1_c_t_2 - rrr_leg1_G_in_axes2_y -
             rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_x
         )
         rrr_leg1_c_x = (
@@ -3632,67 +3671,70 @@ def _run_required(m, X, V, A):
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_in_axes2_y
         rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_in_axes2_x
@@ -3753,14 +3795,10 @@ def _run_inverse_kinematics(m, X):
             rrr_leg1_platform_point_x, rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t,
         ) = k
         # (rrr_leg1-S) from the base point to the connection point
-        rrr_leg1_S_x = (
-        t_x + R_xx*rrr_leg1_platform_point_x - rrr_leg1_base_point_x -
-            R_yx*rrr_leg1_platform_point_y
-        )
-        rrr_leg1_S_y = (
-        t_y + R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x -
-            rrr_leg1_base_point_y
-        )
+        rrr_leg1_q_x = R_xx*rrr_leg1_platform_point_x - R_yx*rrr_leg1_platform_point_y
+        rrr_leg1_q_y = R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x
+        rrr_leg1_S_x = rrr_leg1_q_x + t_x - rrr_leg1_base_point_x
+        rrr_leg1_S_y = rrr_leg1_q_y + t_y - rrr_leg1_base_point_y
         # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
         rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + 0.5*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2
@@ -3780,21 +3818,31 @@ def _run_inverse_kinematics(m, X):
         rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1
         # (rrr_leg1-root_1) root, with the sign of the branch
         rrr_leg1_root_1 = rrr_leg1_branch_1*sqrt(rrr_leg1_disc_1)
-        # (rrr_leg1-q_1) displacement of joint 1
+        # (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_leg1_rho2_1 = 1.0/rrr_leg1_rho2_1
-        rrr_leg1_q_1 = (
-        atan2(inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1),
-            inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1))
+        rrr_leg1_c_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 - rrr_leg1_Ks_1*rrr_leg1_root_1)
         )
+        # (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_leg1_s_1 = (
+        inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 + rrr_leg1_Kd_1*rrr_leg1_Ks_1)
+        )
+        # (rrr_leg1-q_1) displacement of joint 1
+        rrr_leg1_q_1 = atan2(rrr_leg1_s_1, rrr_leg1_c_1)
         # (rrr_leg1-x_2) from the origin of joint 2 to the connection point
         rrr_leg1_x_2_in_axes1_x = (
         inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x
         )
-        # (rrr_leg1-q_2) displacement of joint 2
-        rrr_leg1_q_2 = (
-        atan2(-inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1,
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x)
+        # (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_leg1_c_2 = (
+        inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
+        # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_leg1_s_2 = (
+        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        )
+        # (rrr_leg1-q_2) displacement of joint 2
+        rrr_leg1_q_2 = atan2(rrr_leg1_s_2, rrr_leg1_c_2)
         ok = (
         ok & (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
             (rrr_leg1_disc_1 >= 0.0)
@@ -3811,8 +3859,10 @@ def _run_inverse_kinematics(m, X):
             rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
@@ -3826,19 +3876,23 @@ def _run_inverse_kinematics(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-q_1) displacement of joint 1
+        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
-        rrr_q_1 = (
-        atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
-            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
-        )
+        rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
+        # (rrr-s_1) sine of the angle of joint 1 from its reference direction
+        rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-q_1) displacement of joint 1
+        rrr_q_1 = atan2(rrr_s_1, rrr_c_1)
         # (rrr-x_2) from the origin of joint 2 to the connection point
         rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-q_2) displacement of joint 2
-        rrr_q_2 = (
-        atan2(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x)
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-q_2) displacement of joint 2
+        rrr_q_2 = atan2(rrr_s_2, rrr_c_2)
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
@@ -3847,7 +3901,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 106 mul, 56 add, 4 div, 2 sqrt, 0 trig
+# joint_rates: 108 mul, 56 add, 4 div, 2 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -3925,35 +3979,40 @@ def _run_joint_rates(m, X, V):
         -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
         # (rrr_leg1-S_dot) velocity of the connection point
-        rrr_leg1_S_dot_x = t_dot_x - omega_z*rrr_leg1_q_y
-        rrr_leg1_S_dot_y = t_dot_y + omega_z*rrr_leg1_q_x
+        rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_y
+        rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_x
+        rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t
+        rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_2 + t_dot_y
         # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
         rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
         rrr_leg1_r_1_in_axes1_x = (
         rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
         )
+        rrr_leg1_r_1_in_axes2_x = (
+        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
+        )
         rrr_leg1_r_1_in_axes2_y = (
         rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
         )
-        # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-w_1) reciprocal vector 1
+        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_qd_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_qd_1_t
+        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_qd_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_qd_1_t
+        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
         )
+        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        # (rrr_leg1-qd_1) rate of joint 1
         rrr_leg1_qd_1 = (
-        -(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)
         )
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
-            rrr_leg1_qd_1*(rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2))
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
         )
         ok = (
         ok & (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
@@ -4003,24 +4062,29 @@ def _run_joint_rates(m, X, V):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y
-        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
+        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
         rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
-        -(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y
+        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*(rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2))
+            rrr_qd_1*rrr_r_1_in_axes2_x)
         )
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
@@ -4134,47 +4198,55 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
         )
         # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_qd_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_qd_1_t
+        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_qd_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_qd_1_t
+        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
         )
+        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        # (rrr_leg1-qd_1) rate of joint 1
         rrr_leg1_qd_1 = (
         rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
             axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)
         )
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_2 = (
+        rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+        )
         # (rrr_leg1-W_1) centripetal tensor of link 1
         rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = (
-        rrr_leg1_qd_1 + rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
-        )
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
+        # (rrr_leg1-W_2) centripetal tensor of link 2
+        rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
+        # (rrr_leg1-u_1) centripetal acceleration of the connection point
+        rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_2
+        rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t
         # (rrr_leg1-a_p) acceleration of the connection point without its centripetal part
         rrr_leg1_a_p_x = t_ddot_x - alpha_z*rrr_leg1_q_y
         rrr_leg1_a_p_y = t_ddot_y + alpha_z*rrr_leg1_q_x
         # (rrr_leg1-S_ddot) acceleration of the connection point
-        rrr_leg1_S_ddot_x = rrr_leg1_a_p_x - omega_z*rrr_leg1_S_dot_t_2
-        rrr_leg1_S_ddot_y = rrr_leg1_a_p_y - omega_z*rrr_leg1_S_dot_t
+        rrr_leg1_S_ddot_x = rrr_leg1_a_p_x + rrr_leg1_u_1_x
+        rrr_leg1_S_ddot_y = rrr_leg1_a_p_y - rrr_leg1_u_1_t
+        rrr_leg1_S_ddot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x - axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y
+        )
+        rrr_leg1_S_ddot_in_axes2_y = (
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y + axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x
+        )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_in_axes2_y = rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
         rrr_leg1_bias_in_axes2_x = (
-        -rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
-            - rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
-        rrr_leg1_rel_in_axes2_x = (
-        axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x - rrr_leg1_bias_in_axes2_x -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y
-        )
-        rrr_leg1_rel_in_axes2_y = (
-        axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y + axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x -
-            rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
-        )
+        rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
+        rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y - rrr_leg1_bias_in_axes2_y
         # (rrr_leg1-qdd_1) acceleration of joint 1
         rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-qdd_2) acceleration of joint 2
@@ -4240,41 +4312,45 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
         rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
+        )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
         )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
-        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_in_axes2_x = (
-        axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
-        )
-        rrr_rel_in_axes2_y = (
-        axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        )
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
         # (rrr-qdd_1) acceleration of joint 1
         rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
@@ -4424,21 +4500,26 @@ def _run_legs(m, X, V, A):
         rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
             axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)
         )
+        # (rrr_leg1-qd_2) rate of joint 2
+        rrr_leg1_qd_2 = (
+        rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+        )
         # (rrr_leg1-W_1) centripetal tensor of link 1
         rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = (
-        rrr_leg1_qd_1 + rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
-        )
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
+        # (rrr_leg1-u_1) centripetal acceleration of the connection point
+        rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_2
+        rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t
         # (rrr_leg1-a_p) acceleration of the connection point without its centripetal part
         rrr_leg1_a_p_x = t_ddot_x - alpha_z*rrr_leg1_q_y
         rrr_leg1_a_p_y = t_ddot_y + alpha_z*rrr_leg1_q_x
         # (rrr_leg1-S_ddot) acceleration of the connection point
-        rrr_leg1_S_ddot_x = rrr_leg1_a_p_x - omega_z*rrr_leg1_S_dot_t_2
-        rrr_leg1_S_ddot_y = rrr_leg1_a_p_y - omega_z*rrr_leg1_S_dot_t
+        rrr_leg1_S_ddot_x = rrr_leg1_a_p_x + rrr_leg1_u_1_x
+        rrr_leg1_S_ddot_y = rrr_leg1_a_p_y - rrr_leg1_u_1_t
         rrr_leg1_S_ddot_in_axes2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x - axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y
         )
@@ -4446,31 +4527,32 @@ def _run_legs(m, X, V, A):
         axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y + axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
+        rrr_leg1_bias_in_axes2_y = rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
         rrr_leg1_bias_in_axes2_x = (
         -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
             rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
-        rrr_leg1_rel_in_axes2_y = (
-        rrr_leg1_S_ddot_in_axes2_y - rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-B_1) acceleration tensor of link 1
-        rrr_leg1_B_1_in_axes1_xy = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
-        # (rrr_leg1-alpha_2) angular acceleration of link 2
-        rrr_leg1_alpha_2_in_axes2_z = (
+        rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y - rrr_leg1_bias_in_axes2_y
+        # (rrr_leg1-qdd_1) acceleration of joint 1
+        rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        # (rrr_leg1-qdd_2) acceleration of joint 2
+        rrr_leg1_qdd_2 = (
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y +
-            rrr_leg1_B_1_in_axes1_xy*rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy
+            rrr_leg1_qdd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
+        # (rrr_leg1-alpha_2) angular acceleration of link 2
+        rrr_leg1_alpha_2_in_axes2_z = rrr_leg1_qdd_2 - rrr_leg1_qdd_1_t
         # (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_leg1_acc_2_in_axes2_x = (
-        rrr_leg1_S_ddot_in_axes2_x + axis_y_rrr_leg1_axes2_x*gravity_y -
-            axis_x_rrr_leg1_axes2_x*gravity_x
+        rrr_leg1_g_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*gravity_x - axis_y_rrr_leg1_axes2_x*gravity_y
         )
-        rrr_leg1_acc_2_in_axes2_y = (
-        rrr_leg1_S_ddot_in_axes2_y - axis_x_rrr_leg1_axes2_x*gravity_y -
-            axis_y_rrr_leg1_axes2_x*gravity_x
+        rrr_leg1_g_in_axes2_y = (
+        axis_x_rrr_leg1_axes2_x*gravity_y + axis_y_rrr_leg1_axes2_x*gravity_x
         )
+        rrr_leg1_acc_2_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_g_in_axes2_x
+        rrr_leg1_acc_2_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y - rrr_leg1_g_in_axes2_y
         # (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_leg1_mu_2_in_axes2_z = (
         rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_in_axes2_z +
@@ -4478,25 +4560,27 @@ def _run_legs(m, X, V, A):
             rrr_leg1_acc_2_in_axes2_x*rrr_leg1_h_2_in_spec2_y
         )
         # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_leg1_mu_1_in_axes1_z = (
-        rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1) -
-            rrr_leg1_B_1_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz -
-            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1)
+        rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
+        rrr_leg1_g_in_axes1_y = rrr_leg1_c_1*rrr_leg1_mu_1_t_2 - rrr_leg1_mu_1_t*rrr_leg1_s_1
+        rrr_leg1_mu_1_t_3 = (
+        rrr_leg1_g_in_axes1_y*rrr_leg1_h_1_in_spec1_x -
+            rrr_leg1_g_in_axes1_x*rrr_leg1_h_1_in_spec1_y
         )
+        rrr_leg1_mu_1_in_axes1_z = -rrr_leg1_mu_1_t_3 - rrr_leg1_J_1_in_spec1_zz*rrr_leg1_qdd_1_t
         # (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z
         # (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_leg1_G_in_axes2_y = rrr_leg1_mu_2_in_axes2_z*rrr_leg1_w_2_in_axes2_y
         # (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_leg1_c_t = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x
+        rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         rrr_leg1_c_in_axes2_x = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+        rrr_leg1_c_t + rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
             rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_in_axes1_z)
         )
         rrr_leg1_c_in_axes2_y = (
-        rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y - rrr_leg1_G_in_axes2_y -
+        rrr_leg1_c_t_2 - rrr_leg1_G_in_axes2_y -
             rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_x
         )
         # (rrr_leg1-c_true) leg force on the platform without actuation, the last link's mass included
@@ -4590,67 +4674,70 @@ def _run_legs(m, X, V, A):
         rrr_qd_1 = (
         rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
+        # (rrr-qd_2) rate of joint 2
+        rrr_qd_2 = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = (
-        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
-        )
+        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
-        rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
+        rrr_S_ddot_x = rrr_a_p_x + rrr_u_1_x
+        rrr_S_ddot_y = rrr_a_p_y - rrr_u_1_t
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-B_1) acceleration tensor of link 1
-        rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        # (rrr-qdd_1) acceleration of joint 1
+        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_in_axes2_z = (
-        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
-            rrr_B_1_in_axes1_xy
-        )
+        rrr_alpha_2_in_axes2_z = rrr_qdd_2 - rrr_qdd_1_t
         # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_in_axes2_x = (
-        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
-        )
-        rrr_acc_2_in_axes2_y = (
-        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
-        )
+        rrr_g_in_axes2_x = axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y
+        rrr_g_in_axes2_y = axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x
+        rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_g_in_axes2_x
+        rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_g_in_axes2_y
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_in_axes1_z = (
-        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)
-        )
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
+        rrr_mu_1_t_3 = rrr_g_in_axes1_y*rrr_h_1_in_spec1_x - rrr_g_in_axes1_x*rrr_h_1_in_spec1_y
+        rrr_mu_1_in_axes1_z = -rrr_mu_1_t_3 - rrr_J_1_in_spec1_zz*rrr_qdd_1_t
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
+        rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
+        rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
-        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
         rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass
@@ -4691,11 +4778,11 @@ def _run_potential(m, X):
     R_yx = sin(X_2)
     ok = True
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (potential) potential energy
-    potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x - R_yx*h_star_in_platform_y) +
-        gravity_y*(R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x + m_star*t_y)
-    )
+    potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
     potential_rrr_leg1, = [0.0] * 1
     for leg, k in legs[0]:
         (
@@ -4710,14 +4797,10 @@ def _run_potential(m, X):
             rrr_leg1_rho2_1_t,
         ) = k
         # (rrr_leg1-S) from the base point to the connection point
-        rrr_leg1_S_x = (
-        t_x + R_xx*rrr_leg1_platform_point_x - rrr_leg1_base_point_x -
-            R_yx*rrr_leg1_platform_point_y
-        )
-        rrr_leg1_S_y = (
-        t_y + R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x -
-            rrr_leg1_base_point_y
-        )
+        rrr_leg1_q_x = R_xx*rrr_leg1_platform_point_x - R_yx*rrr_leg1_platform_point_y
+        rrr_leg1_q_y = R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x
+        rrr_leg1_S_x = rrr_leg1_q_x + t_x - rrr_leg1_base_point_x
+        rrr_leg1_S_y = rrr_leg1_q_y + t_y - rrr_leg1_base_point_y
         # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
         rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + 0.5*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2
@@ -4758,15 +4841,16 @@ def _run_potential(m, X):
         rrr_leg1_s_2 = (
         -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
+        # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
+        rrr_leg1_g_in_axes1_y = rrr_leg1_c_1*rrr_leg1_mu_1_t_2 - rrr_leg1_mu_1_t*rrr_leg1_s_1
         # (potential) potential energy
         rrr_leg1_potential_t_3 = (
-        (rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1)*(rrr_leg1_h_1_in_spec1_x +
-            rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_x +
+        rrr_leg1_g_in_axes1_x*(rrr_leg1_h_1_in_spec1_x + rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_x +
             rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t +
             rrr_leg1_potential_t_2*rrr_leg1_s_1) - rrr_leg1_h_2_in_spec2_y*rrr_leg1_s_2) +
-            (rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1)*(rrr_leg1_h_1_in_spec1_y +
-            rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_y + rrr_leg1_h_2_in_spec2_x*rrr_leg1_s_2 +
+            rrr_leg1_g_in_axes1_y*(rrr_leg1_h_1_in_spec1_y + rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_y
+            + rrr_leg1_h_2_in_spec2_x*rrr_leg1_s_2 +
             rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t_2 -
             rrr_leg1_potential_t*rrr_leg1_s_1))
         )
@@ -4787,8 +4871,10 @@ def _run_potential(m, X):
             rrr_platform_point_y, rrr_potential_t, rrr_potential_t_2, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
-        rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
@@ -4815,14 +4901,16 @@ def _run_potential(m, X):
         rrr_s_2 = (
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
+        rrr_g_in_axes1_y = rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1
         # (potential) potential energy
         rrr_potential_t_3 = (
-        (rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x +
-            rrr_c_2*rrr_h_2_in_spec2_x + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
-            rrr_potential_t_2*rrr_s_1) - rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
-            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
-            rrr_potential_t*rrr_s_1))
+        rrr_g_in_axes1_x*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
+            rrr_h_2_in_spec2_y*rrr_s_2) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
+            rrr_c_2*rrr_h_2_in_spec2_y + rrr_h_2_in_spec2_x*rrr_s_2 +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 - rrr_potential_t*rrr_s_1))
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
@@ -4919,6 +5007,9 @@ def _run_condition(m, X):
         rrr_leg1_r_1_in_axes1_x = (
         rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
         )
+        rrr_leg1_r_1_in_axes2_x = (
+        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
+        )
         rrr_leg1_r_1_in_axes2_y = (
         rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
         )
@@ -4936,8 +5027,7 @@ def _run_condition(m, X):
         rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y*(rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2)
+        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -5025,20 +5115,17 @@ def _run_condition(m, X):
         -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
         rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = (
-        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
-        )
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
         rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
         rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = (
-        rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
-        )
-        rrr_w_1_y = (
-        -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
-        )
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_pivot_size = abs(rrr_rho2_1)
         rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
@@ -5227,12 +5314,12 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[0:3]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
-    gap = _wrapped(subtract_1, [0, 1, 2])
-    return (gap,)
+    residual = _wrapped(subtract_1, [0, 1, 2])
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -5241,7 +5328,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

@@ -110,9 +110,10 @@ typedef struct {
             ups_base_frame_zz[4], ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4],
             ups_branch_1[4], ups_branch_2[4], ups_h_2_in_spec2_x[4], ups_h_2_in_spec2_y[4],
             ups_h_2_in_spec2_z[4], ups_h_3_in_spec2_x[4], ups_h_3_in_spec2_y[4],
-            ups_h_3_in_spec2_z[4], ups_link2_mass[4], ups_link3_mass[4], ups_platform_point_x[4],
-            ups_platform_point_y[4], ups_platform_point_z[4], ups_potential_t[4],
-            ups_potential_t_2[4], ups_potential_t_3[4];
+            ups_h_3_in_spec2_z[4], ups_h_group_2_in_axes2_x[4], ups_h_group_2_in_axes2_y[4],
+            ups_h_group_2_in_axes2_z[4], ups_link2_mass[4], ups_link3_mass[4],
+            ups_platform_point_x[4], ups_platform_point_y[4], ups_platform_point_z[4],
+            ups_potential_t[4], ups_potential_t_2[4], ups_potential_t_3[4];
     spherical_3ups_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
             J_star_t_14, b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, fixed_centre_x,
@@ -141,7 +142,7 @@ int spherical_3ups_M(const spherical_3ups_model *model, const spherical_3ups_rea
 size_t spherical_3ups_M_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, spherical_3ups_real *M, int *status);
 
-/* Velocity and gravity terms Z. 513 mul, 372 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 513 mul, 363 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int spherical_3ups_Z(const spherical_3ups_model *model, const spherical_3ups_real *X, const
     spherical_3ups_real *V, spherical_3ups_real *Z);
@@ -169,7 +170,7 @@ int spherical_3ups_joint_rates(const spherical_3ups_model *model, const spherica
 size_t spherical_3ups_joint_rates_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *rates, int *status);
 
-/* Accelerations of all joints. 282 mul, 168 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 279 mul, 168 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int spherical_3ups_joint_accelerations(const spherical_3ups_model *model, const
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,
@@ -178,7 +179,7 @@ size_t spherical_3ups_joint_accelerations_batch(const spherical_3ups_model *mode
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,
     spherical_3ups_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 816 mul, 567 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 816 mul, 558 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int spherical_3ups_dynamics(const spherical_3ups_model *model, const spherical_3ups_real *X, const
     spherical_3ups_real *V, spherical_3ups_real *M, spherical_3ups_real *Z, spherical_3ups_real
@@ -187,7 +188,7 @@ size_t spherical_3ups_dynamics_batch(const spherical_3ups_model *model, size_t n
     spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *M,
     spherical_3ups_real *Z, spherical_3ups_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 567 mul, 414 add, 6 div, 6 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 561 mul, 408 add, 6 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int spherical_3ups_inverse_dynamics(const spherical_3ups_model *model, const spherical_3ups_real
@@ -197,7 +198,7 @@ size_t spherical_3ups_inverse_dynamics_batch(const spherical_3ups_model *model, 
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A, const
     spherical_3ups_real *wrench, spherical_3ups_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 816 mul, 567 add, 6 div, 6 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 816 mul, 558 add, 6 div, 6 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int spherical_3ups_forward_dynamics(const spherical_3ups_model *model, const spherical_3ups_real
@@ -218,7 +219,7 @@ size_t spherical_3ups_complete_acceleration_batch(const spherical_3ups_model *mo
     const spherical_3ups_real *wrench, spherical_3ups_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 474 mul, 345 add, 6 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 468 mul, 348 add, 6 div, 6 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int spherical_3ups_leg_reactions(const spherical_3ups_model *model, const spherical_3ups_real *X,
     const spherical_3ups_real *V, const spherical_3ups_real *A, const spherical_3ups_real *wrench,
@@ -316,7 +317,7 @@ int spherical_3ups_actuator_rates(const spherical_3ups_model *model, const spher
 size_t spherical_3ups_actuator_rates_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 282 mul, 168 add, 6 div, 6 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 279 mul, 168 add, 6 div, 6 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int spherical_3ups_actuator_accelerations(const spherical_3ups_model *model, const
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,

@@ -108,9 +108,10 @@ typedef struct {
             ups_base_frame_zz[8], ups_base_point_x[8], ups_base_point_y[8], ups_base_point_z[8],
             ups_branch_1[8], ups_branch_2[8], ups_h_2_in_spec2_x[8], ups_h_2_in_spec2_y[8],
             ups_h_2_in_spec2_z[8], ups_h_3_in_spec2_x[8], ups_h_3_in_spec2_y[8],
-            ups_h_3_in_spec2_z[8], ups_link2_mass[8], ups_link3_mass[8], ups_platform_point_x[8],
-            ups_platform_point_y[8], ups_platform_point_z[8], ups_potential_t[8],
-            ups_potential_t_2[8], ups_potential_t_3[8];
+            ups_h_3_in_spec2_z[8], ups_h_group_2_in_axes2_x[8], ups_h_group_2_in_axes2_y[8],
+            ups_h_group_2_in_axes2_z[8], ups_link2_mass[8], ups_link3_mass[8],
+            ups_platform_point_x[8], ups_platform_point_y[8], ups_platform_point_z[8],
+            ups_potential_t[8], ups_potential_t_2[8], ups_potential_t_3[8];
     stewart_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
             J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
@@ -137,7 +138,7 @@ int stewart_M(const stewart_model *model, const stewart_real *X, stewart_real *M
 size_t stewart_M_batch(const stewart_model *model, size_t n, const stewart_real *X, stewart_real
     *M, int *status);
 
-/* Velocity and gravity terms Z. 999 mul, 762 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1008 mul, 750 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_Z(const stewart_model *model, const stewart_real *X, const stewart_real *V,
     stewart_real *Z);
@@ -163,21 +164,21 @@ int stewart_joint_rates(const stewart_model *model, const stewart_real *X, const
 size_t stewart_joint_rates_batch(const stewart_model *model, size_t n, const stewart_real *X,
     const stewart_real *V, stewart_real *rates, int *status);
 
-/* Accelerations of all joints. 564 mul, 372 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 552 mul, 363 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int stewart_joint_accelerations(const stewart_model *model, const stewart_real *X, const
     stewart_real *V, const stewart_real *A, stewart_real *accelerations);
 size_t stewart_joint_accelerations_batch(const stewart_model *model, size_t n, const stewart_real
     *X, const stewart_real *V, const stewart_real *A, stewart_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1569 mul, 1227 add, 12 div, 12 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1542 mul, 1191 add, 12 div, 12 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real *V,
     stewart_real *M, stewart_real *Z, stewart_real *H);
 size_t stewart_dynamics_batch(const stewart_model *model, size_t n, const stewart_real *X, const
     stewart_real *V, stewart_real *M, stewart_real *Z, stewart_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1095 mul, 861 add, 12 div, 12 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1071 mul, 831 add, 12 div, 12 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int stewart_inverse_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real
@@ -186,7 +187,7 @@ size_t stewart_inverse_dynamics_batch(const stewart_model *model, size_t n, cons
     const stewart_real *V, const stewart_real *A, const stewart_real *wrench, stewart_real *tau,
     int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1569 mul, 1227 add, 12 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 1542 mul, 1191 add, 12 div, 12
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_forward_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real
@@ -205,7 +206,7 @@ size_t stewart_complete_acceleration_batch(const stewart_model *model, size_t n,
     stewart_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 948 mul, 726 add, 12 div, 12 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 930 mul, 723 add, 12 div, 12 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 3). */
 int stewart_leg_reactions(const stewart_model *model, const stewart_real *X, const stewart_real
     *V, const stewart_real *A, const stewart_real *wrench, stewart_real *forces);
@@ -295,7 +296,7 @@ int stewart_actuator_rates(const stewart_model *model, const stewart_real *X, co
 size_t stewart_actuator_rates_batch(const stewart_model *model, size_t n, const stewart_real *X,
     const stewart_real *V, stewart_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 564 mul, 372 add, 12 div, 12 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 552 mul, 363 add, 12 div, 12 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int stewart_actuator_accelerations(const stewart_model *model, const stewart_real *X, const
     stewart_real *V, const stewart_real *A, stewart_real *accelerations);

@@ -611,6 +611,10 @@ def _prepare(p):
     ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx
     ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy
     ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz
+    # (ups-h_group_2) first moments of the links that turn with link 2
+    ups_h_group_2_in_axes2_x = ups_h_2_in_spec2_x + ups_h_3_in_spec2_x
+    ups_h_group_2_in_axes2_y = -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z
+    ups_h_group_2_in_axes2_z = ups_h_2_in_spec2_y + ups_h_3_in_spec2_y
     # (h_star) first moment about the platform origin
     ups_h_star_t = ups_link3_mass*ups_platform_point_x
     ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y
@@ -680,9 +684,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -692,9 +696,9 @@ def _prepare(p):
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
                     ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y,
-                    ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-                    ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y,
+                    ups_h_group_2_in_axes2_z, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
                 ),
             ),
@@ -718,9 +722,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
@@ -729,8 +733,8 @@ def _prepare(p):
                     ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
                     ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
                     ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
@@ -760,8 +764,8 @@ def _prepare(p):
                     ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
                     ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
                     ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
@@ -812,9 +816,10 @@ def _prepare(p):
                     ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
                     ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
                     ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link3_mass,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
+                    ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
                 ),
             ),
         ),
@@ -1499,11 +1504,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1760,8 +1765,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1769,7 +1774,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1777,11 +1782,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1829,15 +1834,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1569 mul, 1227 add, 12 div, 12 sqrt, 0 trig
+# dynamics: 1542 mul, 1191 add, 12 div, 12 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1919,39 +1923,12 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_ups_xx, M_tt_xy, M_tt_xz, M_tt_ups_yy, M_tt_yz, M_tt_ups_zz, M_ta_xx, M_ta_ups_xy,
         M_ta_ups_xz, M_ta_ups_yx, M_ta_t, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_ta_zz,
@@ -1966,9 +1943,10 @@ def _run_dynamics(m, X, V):
             ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
             ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
             ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
+            ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -2006,6 +1984,8 @@ def _run_dynamics(m, X, V):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
@@ -2043,17 +2023,26 @@ def _run_dynamics(m, X, V):
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
         ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
         ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-u_1) centripetal acceleration of the connection point
         ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        ups_u_1_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
+        )
+        ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x
+        ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y
+        ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z
+        ups_u_1_in_axes2_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3
         ups_u_1_in_axes2_z = (
         axis_z_ups_axes2_x*ups_u_1_x + axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z
         )
@@ -2064,6 +2053,8 @@ def _run_dynamics(m, X, V):
         ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1_o) remainder of: acceleration of joint 1
         ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
         ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_e_1_in_axes2_x
         # (ups-alpha_1_o) remainder of: angular acceleration of link 1
@@ -2073,64 +2064,64 @@ def _run_dynamics(m, X, V):
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
-        ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x
-        ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y
-        ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z
-        ups_B_2_o_in_axes2_yx = (
-        inv_ups_q_3*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
-        )
+        ups_B_2_o_in_axes2_yx = inv_ups_q_3*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_qdd_2_t)
         ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
-        # (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        ups_acc_3_o_t = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
         ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_e_1_in_axes2_x
-        ups_g_in_axes2_y = ups_acc_3_o_t*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
-        ups_acc_3_o_in_axes2_x = (
-        axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
-            - ups_g_in_axes2_x
-        )
-        ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_g_in_axes2_y
-        ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        # (ups-phi_3) inertia force of link 3 from its turning about its reference point
+        ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
         ups_d_phi_3_in_axes2_xy = inv_ups_q_3*ups_h_3_in_spec2_z
         ups_d_phi_3_in_axes2_yy = inv_ups_q_3*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
-        ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
-        ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
         ups_phi_3_o_in_axes2_x = (
-        ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
-            ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        ups_phi_3_t + ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        )
+        # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_t_2 = ups_J_group_2_in_axes2_yz*(ups_W_2_t - ups_W_2_t_2)
+        ups_mu_2_t_3 = ups_J_group_2_in_axes2_xz*(ups_mu_2_t - ups_W_2_t_2)
+        ups_mu_2_t_4 = ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_W_2_t)
+        ups_mu_2_t_5 = (
+        ups_g_in_axes2_z*ups_h_group_2_in_axes2_y - ups_g_in_axes2_y*ups_h_group_2_in_axes2_z
+        )
+        ups_mu_2_t_6 = (
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_z - ups_g_in_axes2_z*ups_h_group_2_in_axes2_x
+        )
+        ups_mu_2_t_7 = (
+        ups_g_in_axes2_y*ups_h_group_2_in_axes2_x - ups_g_in_axes2_x*ups_h_group_2_in_axes2_y
         )
         # (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
         ups_mu_2_o_in_axes2_x = (
-        ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+        ups_mu_2_t_2 + ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
             ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
-            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x - ups_mu_2_t_5 -
             ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z
+            ups_h_3_in_spec2_y*ups_u_1_in_axes2_y - ups_h_3_in_spec2_z*ups_u_1_in_axes2_z
         )
         ups_mu_2_o_in_axes2_y = (
         ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
             ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_h_3_in_spec2_y*ups_u_1_in_axes2_x - ups_mu_2_t_3 - ups_mu_2_t_6 -
             ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_h_3_in_spec2_x*ups_u_1_in_axes2_z
         )
         ups_mu_2_o_in_axes2_z = (
-        ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t -
-            ups_phi_3_o_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+        ups_mu_2_t_4 + ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
             ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
-            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
-            - ups_g_in_axes2_y*ups_h_2_in_spec2_x
+            ups_h_3_in_spec2_x*ups_u_1_in_axes2_y + ups_h_3_in_spec2_z*ups_u_1_in_axes2_x -
+            ups_mu_2_t_7 - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy
         )
+        # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_t = ups_h_3_in_spec2_z*(ups_W_2_t_2 + ups_mu_2_t)
+        ups_c_t_2 = ups_h_3_in_spec2_y*(ups_W_2_t + ups_mu_2_t)
         # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         ups_d_c_in_axes2_xz = inv_ups_q_3*ups_h_3_in_spec2_y
         ups_d_c_in_axes2_yy = (
@@ -2151,14 +2142,13 @@ def _run_dynamics(m, X, V):
         )
         # (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
-        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
-            ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
-            ups_phi_3_o_t_2)
+        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - ups_c_t - inv_ups_q_3*ups_mu_2_o_in_axes2_z
+            - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x
         )
         ups_c_o_in_axes2_z = (
-        inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x)
-            + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
-            ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
+        ups_c_t_2 + inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y -
+            ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
@@ -2472,60 +2462,70 @@ def _run_M(m, X):
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-w_2) reciprocal vector 2
-        ups_w_2_in_axes2_y = 1.0/ups_q_3
-        # (ups-w_3) reciprocal vector 3
-        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
-        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
-        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        ups_e_1_in_axes2_x = ups_S_in_turn1_z*ups_w_2_in_axes2_y
         ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_e_1_in_axes2_x
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_d_phi_3_in_axes2_xy = ups_h_3_in_spec2_z*ups_w_2_in_axes2_y
-        ups_d_phi_3_in_axes2_yy = ups_h_3_in_spec2_x*ups_w_2_in_axes2_y
+        ups_d_phi_3_in_axes2_xy = inv_ups_q_3*ups_h_3_in_spec2_z
+        ups_d_phi_3_in_axes2_yy = inv_ups_q_3*ups_h_3_in_spec2_x
         # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_d_c_in_axes2_xz = ups_h_3_in_spec2_y*ups_w_2_in_axes2_y
+        ups_d_c_in_axes2_xz = inv_ups_q_3*ups_h_3_in_spec2_y
         ups_d_c_in_axes2_yy = (
-        -ups_d_phi_3_in_axes2_yy - ups_w_2_in_axes2_y*(ups_h_3_in_spec2_x +
-            ups_J_group_2_in_axes2_zz*ups_w_2_in_axes2_y)
+        -ups_d_phi_3_in_axes2_yy - inv_ups_q_3*(ups_h_3_in_spec2_x +
+            inv_ups_q_3*ups_J_group_2_in_axes2_zz)
         )
         ups_d_c_in_axes2_yz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            ups_J_group_2_in_axes2_yz*ups_w_2_in_axes2_y)
+            inv_ups_q_3*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_q_3*ups_J_group_2_in_axes2_yz)
         )
         ups_d_c_in_axes2_zz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z - ups_d_phi_3_in_axes2_yy -
             inv_ups_root_1*(ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
-            - ups_h_3_in_spec2_z - ups_J_group_2_in_axes2_xy*ups_w_2_in_axes2_y) -
-            ups_root_1*ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_x - ups_J_group_2_in_axes2_yy*ups_w_2_in_axes2_y))
+            - ups_h_3_in_spec2_z - inv_ups_q_3*ups_J_group_2_in_axes2_xy) -
+            ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_x -
+            inv_ups_q_3*ups_J_group_2_in_axes2_yy))
         )
         # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
-        axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z - axis_z_ups_axes2_z*ups_w_3_y
-        axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x - axis_z_ups_axes2_x*ups_w_3_z
-        axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y - axis_z_ups_axes2_y*ups_w_3_x
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
         ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        ups_d_phi_3_in_axes2_xy*ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
             axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
         )
         ups_Q_t_4 = (
-        ups_d_phi_3_in_axes2_xy*ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
             axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
         )
         ups_Q_t_5 = (
         axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-            ups_d_phi_3_in_axes2_xy*ups_w_3_z
+            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
         )
-        ups_Q_t_6 = axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_x
-        ups_Q_t_7 = axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_y
-        ups_Q_t_8 = axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_z
+        ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
+        ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
+        ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
         ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
         ups_Q_xx = -2.0*ups_Q_t_9
         ups_Q_xy = (
@@ -2653,14 +2653,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 999 mul, 762 add, 12 div, 12 sqrt, 0 trig
+# Z: 1008 mul, 750 add, 12 div, 12 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2716,6 +2716,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2724,39 +2740,12 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_ups_x, Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -2765,9 +2754,10 @@ def _run_Z(m, X, V):
             ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
             ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
             ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
+            ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -2805,6 +2795,8 @@ def _run_Z(m, X, V):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
@@ -2842,17 +2834,26 @@ def _run_Z(m, X, V):
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
         ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
         ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-u_1) centripetal acceleration of the connection point
         ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        ups_u_1_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
+        )
+        ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x
+        ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y
+        ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z
+        ups_u_1_in_axes2_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3
         ups_u_1_in_axes2_z = (
         axis_z_ups_axes2_x*ups_u_1_x + axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z
         )
@@ -2863,6 +2864,8 @@ def _run_Z(m, X, V):
         ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1_o) remainder of: acceleration of joint 1
         ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
         # (ups-alpha_1_o) remainder of: angular acceleration of link 1
         ups_alpha_1_o_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1_o
         ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o
@@ -2870,71 +2873,70 @@ def _run_Z(m, X, V):
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
-        ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x
-        ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y
-        ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z
-        ups_B_2_o_in_axes2_yx = (
-        inv_ups_q_3*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
-        )
+        ups_B_2_o_in_axes2_yx = inv_ups_q_3*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_qdd_2_t)
         ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
-        # (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        ups_acc_3_o_t = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
         ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_e_1_in_axes2_x
-        ups_g_in_axes2_y = ups_acc_3_o_t*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
-        ups_acc_3_o_in_axes2_x = (
-        axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
-            - ups_g_in_axes2_x
-        )
-        ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_g_in_axes2_y
-        ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        # (ups-phi_3) inertia force of link 3 from its turning about its reference point
+        ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
-        ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
-        ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
         ups_phi_3_o_in_axes2_x = (
-        ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
-            ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        ups_phi_3_t + ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        )
+        # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_t_2 = ups_J_group_2_in_axes2_yz*(ups_W_2_t - ups_W_2_t_2)
+        ups_mu_2_t_3 = ups_J_group_2_in_axes2_xz*(ups_mu_2_t - ups_W_2_t_2)
+        ups_mu_2_t_4 = ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_W_2_t)
+        ups_mu_2_t_5 = (
+        ups_g_in_axes2_z*ups_h_group_2_in_axes2_y - ups_g_in_axes2_y*ups_h_group_2_in_axes2_z
+        )
+        ups_mu_2_t_6 = (
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_z - ups_g_in_axes2_z*ups_h_group_2_in_axes2_x
+        )
+        ups_mu_2_t_7 = (
+        ups_g_in_axes2_y*ups_h_group_2_in_axes2_x - ups_g_in_axes2_x*ups_h_group_2_in_axes2_y
         )
         # (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
         ups_mu_2_o_in_axes2_x = (
-        ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+        ups_mu_2_t_2 + ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
             ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
-            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x - ups_mu_2_t_5 -
             ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z
+            ups_h_3_in_spec2_y*ups_u_1_in_axes2_y - ups_h_3_in_spec2_z*ups_u_1_in_axes2_z
         )
         ups_mu_2_o_in_axes2_y = (
         ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
             ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_h_3_in_spec2_y*ups_u_1_in_axes2_x - ups_mu_2_t_3 - ups_mu_2_t_6 -
             ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_h_3_in_spec2_x*ups_u_1_in_axes2_z
         )
         ups_mu_2_o_in_axes2_z = (
-        ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t -
-            ups_phi_3_o_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+        ups_mu_2_t_4 + ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
             ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
-            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
-            - ups_g_in_axes2_y*ups_h_2_in_spec2_x
+            ups_h_3_in_spec2_x*ups_u_1_in_axes2_y + ups_h_3_in_spec2_z*ups_u_1_in_axes2_x -
+            ups_mu_2_t_7 - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy
         )
+        # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_t = ups_h_3_in_spec2_z*(ups_W_2_t_2 + ups_mu_2_t)
+        ups_c_t_2 = ups_h_3_in_spec2_y*(ups_W_2_t + ups_mu_2_t)
         # (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
-        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
-            ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
-            ups_phi_3_o_t_2)
+        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - ups_c_t - inv_ups_q_3*ups_mu_2_o_in_axes2_z
+            - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x
         )
         ups_c_o_in_axes2_z = (
-        inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x)
-            + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
-            ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
+        ups_c_t_2 + inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y -
+            ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-U) velocity and gravity terms of the leg force
         ups_U_x = (
@@ -3060,24 +3062,24 @@ def _run_H(m, X):
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-w_2) reciprocal vector 2
-        ups_w_2_in_axes2_y = 1.0/ups_q_3
-        # (ups-w_3) reciprocal vector 3
-        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
-        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
-        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_q_3 = 1.0/ups_q_3
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-H_a_3) moment of the column's unit force about the platform origin
-        ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y
-        ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z
-        ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x
+        ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z
+        ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
+        ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-w_3) reciprocal vector 3
-        out_H[_H_ups[0][leg]] = ups_w_3_x
-        out_H[_H_ups[1][leg]] = ups_w_3_y
-        out_H[_H_ups[2][leg]] = ups_w_3_z
+        out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
+        out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
+        out_H[_H_ups[2][leg]] = axis_x_ups_axes2_z
         # (ups-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
@@ -3085,7 +3087,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1095 mul, 861 add, 12 div, 12 sqrt, 0 trig
+# required: 1071 mul, 831 add, 12 div, 12 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3159,9 +3161,22 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -3174,21 +3189,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
-        f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
-        f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
-        f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*m_star - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -3237,9 +3240,10 @@ def _run_required(m, X, V, A):
             ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
             ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
             ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
+            ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -3277,6 +3281,8 @@ def _run_required(m, X, V, A):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
@@ -3314,21 +3320,27 @@ def _run_required(m, X, V, A):
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
         ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
         ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
-        # (ups-a_p) acceleration of the connection point without its centripetal part
-        ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
-        ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
-        ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x
         # (ups-S_ddot) acceleration of the connection point
-        ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
-        ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
-        ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        ups_S_ddot_x = t_ddot_x + B_p_xy*ups_q_y + B_p_xz*ups_q_z - W_p_t_4*ups_q_x
+        ups_S_ddot_y = t_ddot_y + B_p_yx*ups_q_x + B_p_yz*ups_q_z - W_p_t_5*ups_q_y
+        ups_S_ddot_z = t_ddot_z + B_p_zx*ups_q_x + B_p_zy*ups_q_y - W_p_t_6*ups_q_z
+        ups_S_ddot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
+            axis_x_ups_axes2_z*ups_S_ddot_z
+        )
+        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_S_ddot_in_axes2_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3
         ups_S_ddot_in_axes2_z = (
         axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
             axis_z_ups_axes2_z*ups_S_ddot_z
@@ -3340,6 +3352,10 @@ def _run_required(m, X, V, A):
         ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
         ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
+        ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
+        ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
         # (ups-alpha_1) angular acceleration of link 1
         ups_alpha_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1
         ups_alpha_1_in_axes2_y = -ups_c_2*ups_qdd_1
@@ -3347,13 +3363,7 @@ def _run_required(m, X, V, A):
         ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
         ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2) acceleration tensor of link 2
-        ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x
-        ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
-        ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
-        ups_B_2_in_axes2_yx = (
-        inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
+        ups_B_2_in_axes2_xy = ups_W_2_in_axes2_xy - ups_qdd_2
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
@@ -3361,56 +3371,57 @@ def _run_required(m, X, V, A):
         ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
         ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
         ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
-        ups_acc_3_in_axes2_x = (
-        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
-            axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x
-        )
-        ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_g_in_axes2_y
-        ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
-        ups_phi_3_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
-        ups_phi_3_t_2 = ups_qd_2*ups_qd_2
+        ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         ups_phi_3_in_axes2_x = (
-        ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_t -
-            ups_phi_3_t_2) - ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z
+        ups_phi_3_t + ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z
         )
         # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
         ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_t_2 = ups_J_group_2_in_axes2_yz*(ups_W_2_t - ups_W_2_t_2)
+        ups_mu_2_t_3 = ups_J_group_2_in_axes2_xz*(ups_mu_2_t - ups_W_2_t_2)
+        ups_mu_2_t_4 = ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_W_2_t)
+        ups_mu_2_t_5 = (
+        ups_g_in_axes2_z*ups_h_group_2_in_axes2_y - ups_g_in_axes2_y*ups_h_group_2_in_axes2_z
+        )
+        ups_mu_2_t_6 = (
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_z - ups_g_in_axes2_z*ups_h_group_2_in_axes2_x
+        )
+        ups_mu_2_t_7 = (
+        ups_g_in_axes2_y*ups_h_group_2_in_axes2_x - ups_g_in_axes2_x*ups_h_group_2_in_axes2_y
+        )
         ups_mu_2_in_axes2_x = (
-        ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t -
-            ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
-            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+        ups_mu_2_t_2 + ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_xz*ups_qdd_2_t_2 +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x - ups_mu_2_t_5 -
             ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z
+            ups_S_ddot_in_axes2_y*ups_h_3_in_spec2_y - ups_S_ddot_in_axes2_z*ups_h_3_in_spec2_z
         )
         ups_mu_2_in_axes2_y = (
-        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy + ups_S_ddot_in_axes2_x*ups_h_3_in_spec2_y +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y - ups_mu_2_t_3 - ups_mu_2_t_6 -
             ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
-            ups_phi_3_t_2) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
-            ups_g_in_axes2_x*ups_h_2_in_spec2_y
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_S_ddot_in_axes2_z*ups_h_3_in_spec2_x
         )
         ups_mu_2_in_axes2_z = (
-        ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_t -
-            ups_phi_3_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+        ups_mu_2_t_4 + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
             ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
-            ups_g_in_axes2_y*ups_h_2_in_spec2_x
+            ups_S_ddot_in_axes2_x*ups_h_3_in_spec2_z + ups_S_ddot_in_axes2_y*ups_h_3_in_spec2_x +
+            ups_Sigma_2_in_axes2_xx*ups_qdd_2_t_2 - ups_mu_2_t_7 -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_t = ups_h_3_in_spec2_z*(ups_W_2_t_2 + ups_mu_2_t)
+        ups_c_t_2 = ups_h_3_in_spec2_y*(ups_W_2_t + ups_mu_2_t)
         ups_c_in_axes2_y = (
-        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_in_axes2_z -
-            ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
-            ups_phi_3_t_2)
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - ups_c_t - inv_ups_q_3*ups_mu_2_in_axes2_z -
+            ups_h_3_in_spec2_x*ups_qdd_2_t_2
         )
         ups_c_in_axes2_z = (
-        inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-            ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t)
-            - ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
+        ups_c_t_2 + inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y -
+            ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
         )
         ups_c_x = (
         axis_y_ups_axes2_x*ups_c_in_axes2_y + axis_z_ups_axes2_x*ups_c_in_axes2_z -
@@ -3522,18 +3533,18 @@ def _run_inverse_kinematics(m, X):
             ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_S_x = (
-        t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z -
-            ups_base_point_x
+        ups_q_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_S_y = (
-        t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z -
-            ups_base_point_y
+        ups_q_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_S_z = (
-        t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
-            ups_base_point_z
+        ups_q_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
@@ -3546,15 +3557,22 @@ def _run_inverse_kinematics(m, X):
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
         ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
         ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-q_1) displacement of joint 1
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_q_1 = atan2(inv_ups_root_1*ups_S_in_turn1_y, inv_ups_root_1*ups_S_in_turn1_x)
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_1) displacement of joint 1
+        ups_q_1 = atan2(ups_s_1, ups_c_1)
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-q_2) displacement of joint 2
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
-        ups_q_2 = atan2(-inv_ups_q_3*ups_S_in_turn1_z, inv_ups_q_3*ups_root_1)
+        ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        ups_q_2 = atan2(-ups_e_1_in_axes2_x, ups_c_2)
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
@@ -3662,14 +3680,18 @@ def _run_joint_rates(m, X, V):
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-S_dot) velocity of the connection point
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
+        # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
-        ups_S_dot_x = t_dot_x + omega_y*ups_q_z - omega_z*ups_q_y
-        ups_S_dot_y = t_dot_y + omega_z*ups_q_x - omega_x*ups_q_z
-        ups_S_dot_z = t_dot_z + omega_x*ups_q_y - omega_y*ups_q_x
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
+        ups_S_dot_x = t_dot_x + ups_S_dot_t
+        ups_S_dot_y = t_dot_y + ups_S_dot_t_2
+        ups_S_dot_z = t_dot_z + ups_S_dot_t_3
         ups_S_dot_in_axes2_x = (
         axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
             axis_x_ups_axes2_z*ups_S_dot_z
@@ -3683,13 +3705,18 @@ def _run_joint_rates(m, X, V):
             axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         ups_qd_2 = (
-        inv_ups_q_3*(ups_S_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
-            ups_S_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
-            ups_S_dot_z*(axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y))
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+            axis_y_ups_axes2_z*ups_S_dot_z)
         )
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
@@ -3705,7 +3732,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 564 mul, 372 add, 12 div, 12 sqrt, 0 trig
+# joint_accelerations: 552 mul, 363 add, 12 div, 12 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -3772,6 +3799,23 @@ def _run_joint_accelerations(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -3812,8 +3856,12 @@ def _run_joint_accelerations(m, X, V, A):
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-S_dot) velocity of the connection point
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
@@ -3850,39 +3898,41 @@ def _run_joint_accelerations(m, X, V, A):
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z*ups_qd_1
-        ups_omega_1_in_axes2_y = -inv_ups_q_3*ups_qd_1*ups_root_1
-        # (ups-a_p) acceleration of the connection point without its centripetal part
-        ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
-        ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
-        ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x
+        ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
+        ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-S_ddot) acceleration of the connection point
-        ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
-        ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
-        ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        ups_S_ddot_x = t_ddot_x + B_p_xy*ups_q_y + B_p_xz*ups_q_z - W_p_t_4*ups_q_x
+        ups_S_ddot_y = t_ddot_y + B_p_yx*ups_q_x + B_p_yz*ups_q_z - W_p_t_5*ups_q_y
+        ups_S_ddot_z = t_ddot_z + B_p_zx*ups_q_x + B_p_zy*ups_q_y - W_p_t_6*ups_q_z
+        ups_S_ddot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
+            axis_x_ups_axes2_z*ups_S_ddot_z
+        )
+        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_S_ddot_in_axes2_z = (
+        axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
+            axis_z_ups_axes2_z*ups_S_ddot_z
+        )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
-        ups_bias_in_axes2_z = (
-        2.0*ups_omega_1_in_axes2_x*ups_q_3*ups_qd_2 - ups_bias_t*ups_omega_1_in_axes2_y
-        )
+        ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
         # (ups-rel) acceleration of the connection point left to the joint accelerations
-        ups_rel_in_axes2_x = (
-        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
-            axis_x_ups_axes2_z*ups_S_ddot_z -
-            ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2)
-        )
-        ups_rel_in_axes2_z = (
-        axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
-            axis_z_ups_axes2_z*ups_S_ddot_z - ups_bias_in_axes2_z
-        )
+        ups_rel_in_axes2_x = ups_S_ddot_in_axes2_x - ups_W_2_in_axes2_xx*ups_q_3
+        ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
         ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-qdd_2) acceleration of joint 2
-        ups_qdd_2 = (
-        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_ddot_x + axis_y_ups_axes2_y*ups_S_ddot_y +
-            axis_y_ups_axes2_z*ups_S_ddot_z - ups_bias_t*ups_qd_2) -
-            ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
-        )
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
+        ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
+        ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
@@ -3897,7 +3947,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 948 mul, 726 add, 12 div, 12 sqrt, 0 trig
+# legs: 930 mul, 723 add, 12 div, 12 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -3965,6 +4015,23 @@ def _run_legs(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
@@ -3972,10 +4039,10 @@ def _run_legs(m, X, V, A):
             ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
             ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
             ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
+            ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_link3_mass,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -4013,6 +4080,8 @@ def _run_legs(m, X, V, A):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
@@ -4050,21 +4119,27 @@ def _run_legs(m, X, V, A):
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
         ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
         ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
-        # (ups-a_p) acceleration of the connection point without its centripetal part
-        ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
-        ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
-        ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x
         # (ups-S_ddot) acceleration of the connection point
-        ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
-        ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
-        ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
+        ups_S_ddot_x = t_ddot_x + B_p_xy*ups_q_y + B_p_xz*ups_q_z - W_p_t_4*ups_q_x
+        ups_S_ddot_y = t_ddot_y + B_p_yx*ups_q_x + B_p_yz*ups_q_z - W_p_t_5*ups_q_y
+        ups_S_ddot_z = t_ddot_z + B_p_zx*ups_q_x + B_p_zy*ups_q_y - W_p_t_6*ups_q_z
+        ups_S_ddot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
+            axis_x_ups_axes2_z*ups_S_ddot_z
+        )
+        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_S_ddot_in_axes2_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3
         ups_S_ddot_in_axes2_z = (
         axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
             axis_z_ups_axes2_z*ups_S_ddot_z
@@ -4076,6 +4151,10 @@ def _run_legs(m, X, V, A):
         ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
         ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
+        ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
+        ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
         # (ups-alpha_1) angular acceleration of link 1
         ups_alpha_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1
         ups_alpha_1_in_axes2_y = -ups_c_2*ups_qdd_1
@@ -4083,13 +4162,7 @@ def _run_legs(m, X, V, A):
         ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
         ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2) acceleration tensor of link 2
-        ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x
-        ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
-        ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
-        ups_B_2_in_axes2_yx = (
-        inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
+        ups_B_2_in_axes2_xy = ups_W_2_in_axes2_xy - ups_qdd_2
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
@@ -4097,58 +4170,63 @@ def _run_legs(m, X, V, A):
         ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
         ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
         ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
-        ups_acc_3_in_axes2_x = (
-        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
-            axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x
-        )
-        ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_g_in_axes2_y
+        ups_acc_3_in_axes2_x = ups_S_ddot_in_axes2_x - ups_g_in_axes2_x
+        ups_acc_3_in_axes2_y = ups_S_ddot_in_axes2_y - ups_g_in_axes2_y
         ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
+        # (ups-phi_3) inertia force of link 3 from its turning about its reference point
+        ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
+        ups_phi_3_in_axes2_x = (
+        ups_phi_3_t + ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z
+        )
         # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
         ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
-        ups_mu_2_t_2 = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
-        ups_mu_2_t_3 = ups_qd_2*ups_qd_2
+        ups_mu_2_t_2 = ups_J_group_2_in_axes2_yz*(ups_W_2_t - ups_W_2_t_2)
+        ups_mu_2_t_3 = ups_J_group_2_in_axes2_xz*(ups_mu_2_t - ups_W_2_t_2)
+        ups_mu_2_t_4 = ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_W_2_t)
+        ups_mu_2_t_5 = (
+        ups_g_in_axes2_z*ups_h_group_2_in_axes2_y - ups_g_in_axes2_y*ups_h_group_2_in_axes2_z
+        )
+        ups_mu_2_t_6 = (
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_z - ups_g_in_axes2_z*ups_h_group_2_in_axes2_x
+        )
+        ups_mu_2_t_7 = (
+        ups_g_in_axes2_y*ups_h_group_2_in_axes2_x - ups_g_in_axes2_x*ups_h_group_2_in_axes2_y
+        )
         ups_mu_2_in_axes2_x = (
-        ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2
-            - ups_mu_2_t_3) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
-            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+        ups_mu_2_t_2 + ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_xz*ups_qdd_2_t_2 +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x - ups_mu_2_t_5 -
             ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z
+            ups_S_ddot_in_axes2_y*ups_h_3_in_spec2_y - ups_S_ddot_in_axes2_z*ups_h_3_in_spec2_z
         )
         ups_mu_2_in_axes2_y = (
-        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy + ups_S_ddot_in_axes2_x*ups_h_3_in_spec2_y +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y - ups_mu_2_t_3 - ups_mu_2_t_6 -
             ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
-            ups_mu_2_t_3) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
-            ups_g_in_axes2_x*ups_h_2_in_spec2_y
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_S_ddot_in_axes2_z*ups_h_3_in_spec2_x
         )
         ups_mu_2_in_axes2_z = (
-        ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_t -
-            ups_mu_2_t_2) + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+        ups_mu_2_t_4 + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
             ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
-            ups_g_in_axes2_y*ups_h_2_in_spec2_x
+            ups_S_ddot_in_axes2_x*ups_h_3_in_spec2_z + ups_S_ddot_in_axes2_y*ups_h_3_in_spec2_x +
+            ups_Sigma_2_in_axes2_xx*ups_qdd_2_t_2 - ups_mu_2_t_7 -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_t = ups_h_3_in_spec2_z*(ups_W_2_t_2 + ups_mu_2_t)
+        ups_c_t_2 = ups_h_3_in_spec2_y*(ups_W_2_t + ups_mu_2_t)
         ups_c_in_axes2_y = (
-        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_in_axes2_z -
-            ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
-            ups_mu_2_t_3)
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - ups_c_t - inv_ups_q_3*ups_mu_2_in_axes2_z -
+            ups_h_3_in_spec2_x*ups_qdd_2_t_2
         )
         ups_c_in_axes2_z = (
-        inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-            ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t +
-            ups_mu_2_t_2) - ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
+        ups_c_t_2 + inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y -
+            ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
-        ups_c_true_in_axes2_x = (
-        ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z - ups_acc_3_in_axes2_x*ups_link3_mass -
-            ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y - ups_h_3_in_spec2_x*(-ups_mu_2_t_2 -
-            ups_mu_2_t_3)
-        )
+        ups_c_true_in_axes2_x = -ups_phi_3_in_axes2_x - ups_acc_3_in_axes2_x*ups_link3_mass
         ups_c_true_in_axes2_y = ups_c_in_axes2_y - ups_acc_3_in_axes2_y*ups_link3_mass
         ups_c_true_in_axes2_z = ups_c_in_axes2_z - ups_acc_3_in_axes2_z*ups_link3_mass
         ups_c_true_x = (
@@ -4224,12 +4302,14 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
+    gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
+        m_star*t_z)
     )
     potential_ups, = [0.0] * 1
     for leg, k in legs[0]:
@@ -4243,18 +4323,18 @@ def _run_potential(m, X):
             ups_platform_point_z, ups_potential_t, ups_potential_t_2, ups_potential_t_3,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_S_x = (
-        t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z -
-            ups_base_point_x
+        ups_q_x = (
+        R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_S_y = (
-        t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z -
-            ups_base_point_y
+        ups_q_y = (
+        R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_S_z = (
-        t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
-            ups_base_point_z
+        ups_q_z = (
+        R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
@@ -4278,26 +4358,29 @@ def _run_potential(m, X):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
-        # (potential) potential energy
+        # (ups-q_2) displacement of joint 2
         ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
-        ups_potential_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_potential_t_5 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
-        ups_potential_t_6 = (
-        (ups_e_1_in_axes2_x*ups_potential_t_4 - ups_acc_3_t_3*ups_c_2)*(ups_h_2_in_spec2_z +
-            ups_h_3_in_spec2_z - ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_5 -
-            ups_c_2*ups_potential_t_3)) - (ups_acc_3_t_2*ups_c_1 -
-            ups_acc_3_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
-            ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1)) -
-            (ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
-            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
-            ups_e_1_in_axes2_x*ups_potential_t_3))
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        # (potential) potential energy
+        ups_potential_t_4 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
+        ups_potential_t_5 = (
+        ups_g_in_axes2_y*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
+            ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_4 - ups_c_2*ups_potential_t_3)) -
+            ups_g_in_axes2_x*(ups_h_2_in_spec2_x + ups_h_3_in_spec2_x +
+            ups_link2_mass*(ups_c_2*ups_potential_t_4 + ups_e_1_in_axes2_x*ups_potential_t_3)) -
+            ups_g_in_axes2_z*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
+            ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1))
         )
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (potential) potential energy
-        potential_ups += ups_potential_t_6
+        potential_ups += ups_potential_t_5
     # (potential) potential energy
     potential = potential_ups - potential_t
     # (potential) potential energy
@@ -4391,12 +4474,12 @@ def _run_condition(m, X):
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-w_2) reciprocal vector 2
-        ups_w_2_in_axes2_y = 1.0/ups_q_3
-        # (ups-w_3) reciprocal vector 3
-        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
-        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
-        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_q_3 = 1.0/ups_q_3
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         ups_pivot_size = abs(ups_root_1_t)
         ups_pivot_size_2 = abs(ups_q_3_t)
@@ -4407,9 +4490,9 @@ def _run_condition(m, X):
             1.25*ups_pivot_size_3), 1.25*ups_pivot_size_4)
         )
         # (ups-H_a_3) moment of the column's unit force about the platform origin
-        ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y
-        ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z
-        ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x
+        ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z
+        ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
+        ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         # (spread) rms distance of the platform points from their centroid
         ups_spread_t = b_c_in_platform_x - ups_platform_point_x
         ups_spread_t_2 = b_c_in_platform_y - ups_platform_point_y
@@ -4425,9 +4508,9 @@ def _run_condition(m, X):
         # (spread) rms distance of the platform points from their centroid
         spread_ups += ups_spread_t_4
         # (ups-w_3) reciprocal vector 3
-        out_H[_H_ups[0][leg]] = ups_w_3_x
-        out_H[_H_ups[1][leg]] = ups_w_3_y
-        out_H[_H_ups[2][leg]] = ups_w_3_z
+        out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
+        out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
+        out_H[_H_ups[2][leg]] = axis_x_ups_axes2_z
         # (ups-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
@@ -4686,11 +4769,11 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_2 = q[[2, 5, 8, 11, 14, 17]]
-    gap = q_actuated - q_of_inverse_kinematics_from_2
-    return (gap,)
+    residual = q_actuated - q_of_inverse_kinematics_from_2
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -4699,7 +4782,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

@@ -147,9 +147,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -211,6 +211,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -259,7 +283,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -269,7 +293,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -282,7 +306,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -299,16 +323,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -316,7 +340,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -703,6 +736,10 @@ int stewart_7ups_prepare(const stewart_7ups_params *params, stewart_7ups_model *
         const real ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx;
         const real ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy;
         const real ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz;
+        /* (ups-h_group_2) first moments of the links that turn with link 2 */
+        const real ups_h_group_2_in_axes2_x = ups_h_2_in_spec2_x + ups_h_3_in_spec2_x;
+        const real ups_h_group_2_in_axes2_y = -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z;
+        const real ups_h_group_2_in_axes2_z = ups_h_2_in_spec2_y + ups_h_3_in_spec2_y;
         /* (h_star) */
         const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
@@ -757,6 +794,9 @@ int stewart_7ups_prepare(const stewart_7ups_params *params, stewart_7ups_model *
         KEEP_OF_LEG(ups_h_3_in_spec2_x);
         KEEP_OF_LEG(ups_h_3_in_spec2_y);
         KEEP_OF_LEG(ups_h_3_in_spec2_z);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_x);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_y);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_z);
         KEEP_OF_LEG(ups_link2_mass);
         KEEP_OF_LEG(ups_link3_mass);
         KEEP_OF_LEG(ups_platform_point_x);
@@ -1319,8 +1359,8 @@ INLINE void doubt(int known, int found, real *unreachable, real *overflow)
     *unreachable += UNLESS(found || !known);
 }
 
-/* The bound that is missed by most, n if none; sign is 1 for a lower, -1 for an upper one. */
-static size_t missed_bound(size_t n, const real *start, const real *t, const real *least,
+/* The bound that is violated by most, n if none; sign is 1 for a lower, -1 for an upper one. */
+static size_t violated_bound(size_t n, const real *start, const real *t, const real *least,
         const real *most, const real *side, real *sign)
 {
     const real size = largest(start, n), endless = largest(start + n, n);
@@ -1328,13 +1368,13 @@ static size_t missed_bound(size_t n, const real *start, const real *t, const rea
     size_t worst = n;
     for (size_t k = 0; k < 2*n; ++k) {
         const size_t i = k < n ? k : k - n;
-        const real s = k < n ? 1 : -1, bound = k < n ? least[i] : most[i], gap = s*(bound - t[i]);
+        const real s = k < n ? 1 : -1, bound = k < n ? least[i] : most[i], excess = s*(bound - t[i]);
         const real rate = magnitude(t[n + i]) > PIVOT*endless ? -s*t[n + i] : 0;
-        const int is_missed = rate > 0 || (rate >= 0 && gap > PIVOT*(size + magnitude(bound)));
-        if (is_missed && is_finite(bound) && !(magnitude(side[i]) > 0)
-            && (rate > second || (rate >= second && gap > first))) {
+        const int is_violated = rate > 0 || (rate >= 0 && excess > PIVOT*(size + magnitude(bound)));
+        if (is_violated && is_finite(bound) && !(magnitude(side[i]) > 0)
+            && (rate > second || (rate >= second && excess > first))) {
             worst = i;
-            first = gap;
+            first = excess;
             second = rate;
             *sign = s;
         }
@@ -1356,11 +1396,11 @@ static void at_bounds(size_t n, const real *gram, const real *side, const real *
     solve_one(n, stride, rows, x, &unsure);
 }
 
-/* Points from amounts of the normals. */
-static void moved_by(size_t n, const real *start, const real *gram, const real *amounts, real *t)
+/* Points from coefficients of the normals. */
+static void moved_by(size_t n, const real *start, const real *gram, const real *coefficients, real *t)
 {
     for (size_t e = 0; e < 2*n; ++e) {
-        const real *const row = gram + e%n*n, *const own = amounts + (e < n ? 0 : n);
+        const real *const row = gram + e%n*n, *const own = coefficients + (e < n ? 0 : n);
         t[e] = start[e];
         for (size_t j = 0; j < n; ++j) {
             t[e] += row[j]*own[j];
@@ -1372,14 +1412,14 @@ static void moved_by(size_t n, const real *start, const real *gram, const real *
 static void settle(size_t n, const real *start, const real *gram, const real *least,
         const real *most, const real *side, real *t)
 {
-    real amounts[2*BIG] = {0}, right[2*BIG] = {0};
+    real coefficients[2*BIG] = {0}, right[2*BIG] = {0};
     for (size_t i = 0; i < n; ++i) {
         right[i] = (side[i] > 0 ? least[i] : most[i]) - start[i];
         right[n + i] = -start[n + i];
     }
-    at_bounds(n, gram, side, right, amounts);
-    at_bounds(n, gram, side, right + n, amounts + n);
-    moved_by(n, start, gram, amounts, t);
+    at_bounds(n, gram, side, right, coefficients);
+    at_bounds(n, gram, side, right + n, coefficients + n);
+    moved_by(n, start, gram, coefficients, t);
     for (size_t i = 0; i < n; ++i) {
         t[i] = side[i] > 0 || t[i] < least[i] ? least[i] : side[i] < 0 || t[i] > most[i] ? most[i] : t[i];
     }
@@ -1391,11 +1431,11 @@ static void settle(size_t n, const real *start, const real *gram, const real *le
 static int nearest_point(size_t n, const real *start, const real *gram, const real *least,
         const real *most, real *t)
 {
-    real amounts[2*BIG] = {0}, side[BIG] = {0}, right[BIG] = {0}, without[BIG] = {0}, sign = 0;
+    real coefficients[2*BIG] = {0}, side[BIG] = {0}, right[BIG] = {0}, without[BIG] = {0}, sign = 0;
     size_t p = n;
     for (size_t turn = 0; turn < TURNS*n; ++turn) {
-        moved_by(n, start, gram, amounts, t);
-        p = p < n ? p : missed_bound(n, start, t, least, most, side, &sign);
+        moved_by(n, start, gram, coefficients, t);
+        p = p < n ? p : violated_bound(n, start, t, least, most, side, &sign);
         if (p >= n) {
             settle(n, start, gram, least, most, side, t);
             return 1;
@@ -1419,7 +1459,7 @@ static int nearest_point(size_t n, const real *start, const real *gram, const re
         }
         for (size_t i = 0; i < n; ++i) {
             const real share = side[i]*without[i] > clear ? without[i] : R(INFINITY);
-            const real shift = amounts[i]/share, rate = amounts[n + i]/share;
+            const real shift = coefficients[i]/share, rate = coefficients[n + i]/share;
             if (is_finite(share)
                 && (leaving == 2*n || rate < second || (rate <= second && shift < first))) {
                 leaving = i;
@@ -1431,16 +1471,16 @@ static int nearest_point(size_t n, const real *start, const real *gram, const re
             return 0;
         }
         for (size_t i = 0; i < n; ++i) {
-            amounts[i] -= without[i]*first;
-            amounts[n + i] -= without[i]*second;
+            coefficients[i] -= without[i]*first;
+            coefficients[n + i] -= without[i]*second;
         }
-        amounts[p] += sign*first;
-        amounts[n + p] += sign*second;
+        coefficients[p] += sign*first;
+        coefficients[n + p] += sign*second;
         if (leaving == n) {
             side[p] = sign;
             p = n;
         } else {
-            side[leaving] = amounts[leaving] = amounts[n + leaving] = 0;
+            side[leaving] = coefficients[leaving] = coefficients[n + leaving] = 0;
         }
     }
     return 0;
@@ -1594,10 +1634,28 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
-        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
-        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+    real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
+        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
+
+INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
+{
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real W_p_t = omega_x*omega_x;
+    const real omega_y = V[4*w + k];
+    const real W_p_t_2 = omega_y*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_t_3 = omega_z*omega_z;
+    v->W_p_t_4 = W_p_t_2 + W_p_t_3;
+    v->W_p_xy = omega_x*omega_y;
+    v->W_p_xz = omega_x*omega_z;
+    v->W_p_t_5 = W_p_t + W_p_t_3;
+    v->W_p_yz = omega_y*omega_z;
+    v->W_p_t_6 = W_p_t + W_p_t_2;
+}
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
@@ -1607,10 +1665,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_5 = X[5*w + k];
     const real X_6 = X[6*w + k];
     const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-    const real quaternion_scale = 2/quaternion_norm2;
-    const real quaternion_sx = X_3*quaternion_scale;
-    const real quaternion_sy = X_4*quaternion_scale;
-    const real quaternion_sz = X_5*quaternion_scale;
+    v->quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*v->quaternion_scale;
+    const real quaternion_sy = X_4*v->quaternion_scale;
+    const real quaternion_sz = X_5*v->quaternion_scale;
     const real quaternion_wx = X_6*quaternion_sx;
     const real quaternion_wy = X_6*quaternion_sy;
     const real quaternion_wz = X_6*quaternion_sz;
@@ -1620,53 +1678,22 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real quaternion_yy = X_4*quaternion_sy;
     const real quaternion_yz = X_4*quaternion_sz;
     const real quaternion_zz = X_5*quaternion_sz;
-    const real R_xx = 1 - quaternion_yy - quaternion_zz;
-    const real R_xy = quaternion_xy - quaternion_wz;
-    const real R_xz = quaternion_wy + quaternion_xz;
-    const real R_yx = quaternion_wz + quaternion_xy;
-    const real R_yy = 1 - quaternion_xx - quaternion_zz;
-    const real R_yz = quaternion_yz - quaternion_wx;
-    const real R_zx = quaternion_xz - quaternion_wy;
-    const real R_zy = quaternion_wx + quaternion_yz;
-    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    v->R_xx = 1 - quaternion_yy - quaternion_zz;
+    v->R_xy = quaternion_xy - quaternion_wz;
+    v->R_xz = quaternion_wy + quaternion_xz;
+    v->R_yx = quaternion_wz + quaternion_xy;
+    v->R_yy = 1 - quaternion_xx - quaternion_zz;
+    v->R_yz = quaternion_yz - quaternion_wx;
+    v->R_zx = quaternion_xz - quaternion_wy;
+    v->R_zy = quaternion_wx + quaternion_yz;
+    v->R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
-        R_xx*m->h_star_in_platform_x;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
-        R_yy*m->h_star_in_platform_y;
-    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
-        R_zz*m->h_star_in_platform_z;
-    v->quaternion_scale = quaternion_scale;
-    v->R_xx = R_xx;
-    v->R_xy = R_xy;
-    v->R_xz = R_xz;
-    v->R_yx = R_yx;
-    v->R_yy = R_yy;
-    v->R_yz = R_yz;
-    v->R_zx = R_zx;
-    v->R_zy = R_zy;
-    v->R_zz = R_zz;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
-    v->h_star_z = h_star_z;
-}
-
-INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
-{
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
-    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
-    v->omega_in_platform_x = omega_in_platform_x;
-    v->omega_in_platform_y = omega_in_platform_y;
-    v->omega_in_platform_z = omega_in_platform_z;
-}
-
-INLINE void stage_M_dynamics(const prepared *m, values *v)
-{
+    v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
+        v->R_xx*m->h_star_in_platform_x;
+    v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
+        v->R_yy*m->h_star_in_platform_y;
+    v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
+        v->R_zz*m->h_star_in_platform_z;
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
@@ -1678,23 +1705,31 @@ INLINE void stage_M_dynamics(const prepared *m, values *v)
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
-    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+    v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
-    v->J_star_xx = J_star_xx;
-    v->J_star_xy = J_star_xy;
-    v->J_star_xz = J_star_xz;
-    v->J_star_yy = J_star_yy;
-    v->J_star_yz = J_star_yz;
-    v->J_star_zz = J_star_zz;
+    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
+}
+
+INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
+{
+    /* (B_p) acceleration tensor of the platform */
+    const real alpha_z = A[5*w + k];
+    v->B_p_xy = v->W_p_xy - alpha_z;
+    const real alpha_y = A[4*w + k];
+    v->B_p_xz = alpha_y + v->W_p_xz;
+    v->B_p_yx = alpha_z + v->W_p_xy;
+    const real alpha_x = A[3*w + k];
+    v->B_p_yz = v->W_p_yz - alpha_x;
+    v->B_p_zx = v->W_p_xz - alpha_y;
+    v->B_p_zy = alpha_x + v->W_p_yz;
 }
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
@@ -1706,62 +1741,37 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
+    v->Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    v->Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    v->Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
-        v->R_xx*m->gravity_x;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
-        v->R_yy*m->gravity_y;
-    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
-        v->R_zz*m->gravity_z;
-    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
-        Z_q_t_2*v->omega_in_platform_z;
-    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
-        Z_q_t_3*v->omega_in_platform_x;
-    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
-        Z_q_t*v->omega_in_platform_y;
-    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
-        v->R_xz*Z_q_in_platform_z;
-    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
-        v->R_yz*Z_q_in_platform_z;
-    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
-        v->R_zz*Z_q_in_platform_z;
-    v->Z_p_x = Z_p_x;
-    v->Z_p_y = Z_p_y;
-    v->Z_p_z = Z_p_z;
-    v->Z_q_x = Z_q_x;
-    v->Z_q_y = Z_q_y;
-    v->Z_q_z = Z_q_z;
+    const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
+    const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
+    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
+        Z_q_t_2*omega_z;
+    v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
+        Z_q_t_3*omega_x;
+    v->Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x + Z_q_t_2*omega_x -
+        Z_q_t*omega_y;
 }
 
 typedef struct {
-    real ups_q_x, ups_q_y, ups_q_z, ups_S_in_turn1_z, ups_root_1_t, ups_root_1, inv_ups_root_1,
-        ups_c_1, ups_s_1, ups_q_3_t, ups_q_3, inv_ups_q_3, ups_c_2, axis_x_ups_axes2_x,
+    real ups_q_x, ups_q_y, ups_q_z, ups_root_1_t, ups_root_1, inv_ups_root_1, ups_c_1, ups_s_1,
+        ups_q_3_t, ups_q_3, inv_ups_q_3, ups_c_2, ups_e_1_in_axes2_x, axis_x_ups_axes2_x,
         axis_x_ups_axes2_y, axis_x_ups_axes2_z, axis_z_ups_axes2_x, axis_z_ups_axes2_y,
         axis_z_ups_axes2_z, axis_y_ups_axes2_x, axis_y_ups_axes2_y, axis_y_ups_axes2_z,
-        ups_e_1_in_axes2_x, ups_g_in_axes2_z, ups_w_2_in_axes2_y, ups_w_3_x, ups_w_3_y, ups_w_3_z,
-        ups_a_p_x, ups_a_p_y, ups_a_p_z, ups_S_dot_t, ups_S_dot_t_2, ups_S_dot_t_3, ups_qd_1,
-        ups_qd_2, ups_omega_1_in_axes2_x, ups_omega_1_in_axes2_y, ups_W_2_in_axes2_yz,
-        ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xy, ups_bias_t, ups_bias_in_axes2_z, ups_S_ddot_x,
-        ups_S_ddot_y, ups_S_ddot_z, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
-        ups_S_in_turn1_x, ups_S_in_turn1_y, ups_alpha_1_in_axes2_x, ups_alpha_1_in_axes2_y,
-        ups_B_2_in_axes2_yx, ups_B_2_in_axes2_xy, ups_B_2_in_axes2_zx, ups_B_2_in_axes2_zy,
-        ups_g_in_axes2_x, ups_g_in_axes2_y, ups_acc_3_in_axes2_x, ups_acc_3_in_axes2_y,
-        ups_acc_3_in_axes2_z, ups_mu_2_t;
+        ups_g_in_axes2_z, ups_g_in_axes2_x, ups_g_in_axes2_y, ups_mu_2_t_5, ups_mu_2_t_6,
+        ups_mu_2_t_7, ups_H_a_3_x, ups_H_a_3_y, ups_H_a_3_z, ups_S_dot_t, ups_S_dot_t_2,
+        ups_S_dot_t_3, ups_S_dot_in_axes2_x, ups_qd_1, ups_qd_2, ups_W_2_in_axes2_yz,
+        ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xx, ups_W_2_in_axes2_xy, ups_bias_in_axes2_z,
+        ups_qdd_2_t, ups_phi_3_t, ups_mu_2_t_2, ups_mu_2_t_3, ups_mu_2_t_4, ups_c_t, ups_c_t_2,
+        ups_S_ddot_in_axes2_x, ups_S_ddot_t, ups_S_ddot_t_2, ups_S_ddot_t_3, ups_S_ddot_in_axes2_z,
+        ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz,
+        ups_Q_zz, ups_M_ta_t_3, ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
+        ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2, ups_M_aa_t_3,
+        ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2,
+        ups_Z_a_t_3, ups_S_ddot_in_axes2_y, ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z;
 } values_ups;
 
 INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1771,24 +1781,24 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real ups_q_x = R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] +
+    v->ups_q_x = R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] +
         R_xx*m->ups_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yz*m->ups_platform_point_z[i] +
+    v->ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yz*m->ups_platform_point_z[i] +
         R_yy*m->ups_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real ups_q_z = R_zx*m->ups_platform_point_x[i] + R_zy*m->ups_platform_point_y[i] +
+    v->ups_q_z = R_zx*m->ups_platform_point_x[i] + R_zy*m->ups_platform_point_y[i] +
         R_zz*m->ups_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real ups_S_x = t_x - m->ups_base_point_x[i] + ups_q_x;
+    const real ups_S_x = t_x - m->ups_base_point_x[i] + v->ups_q_x;
     const real t_y = X[1*w + j];
-    const real ups_S_y = t_y - m->ups_base_point_y[i] + ups_q_y;
+    const real ups_S_y = t_y - m->ups_base_point_y[i] + v->ups_q_y;
     const real t_z = X[2*w + j];
-    const real ups_S_z = t_z - m->ups_base_point_z[i] + ups_q_z;
+    const real ups_S_z = t_z - m->ups_base_point_z[i] + v->ups_q_z;
     const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
         ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
@@ -1796,158 +1806,221 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real ups_S_in_turn1_z = ups_S_x*m->ups_base_frame_xz[i] +
         ups_S_y*m->ups_base_frame_yz[i] + ups_S_z*m->ups_base_frame_zz[i];
     /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
-        ups_S_in_turn1_y*ups_S_in_turn1_y;
-    const real ups_root_1 = m->ups_branch_1[i]*root(ups_root_1_t);
+    v->ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y;
+    v->ups_root_1 = m->ups_branch_1[i]*root(v->ups_root_1_t);
     /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_ups_root_1 = 1/ups_root_1;
-    const real ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x;
+    v->inv_ups_root_1 = 1/v->ups_root_1;
+    v->ups_c_1 = v->inv_ups_root_1*ups_S_in_turn1_x;
     /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-    const real ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y;
+    v->ups_s_1 = v->inv_ups_root_1*ups_S_in_turn1_y;
     /* (ups-q_3) displacement of joint 3 */
-    const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
-    const real ups_q_3 = m->ups_branch_2[i]*root(ups_q_3_t);
+    v->ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + v->ups_root_1_t;
+    v->ups_q_3 = m->ups_branch_2[i]*root(v->ups_q_3_t);
     /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_ups_q_3 = 1/ups_q_3;
-    const real ups_c_2 = inv_ups_q_3*ups_root_1;
+    v->inv_ups_q_3 = 1/v->ups_q_3;
+    v->ups_c_2 = v->inv_ups_q_3*v->ups_root_1;
+    /* (ups-q_2) displacement of joint 2 */
+    v->ups_e_1_in_axes2_x = v->inv_ups_q_3*ups_S_in_turn1_z;
     /* (ups-S_dot) velocity of the connection point */
-    const real axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x;
-    const real axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y;
-    const real axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z;
+    v->axis_x_ups_axes2_x = v->inv_ups_q_3*ups_S_x;
+    v->axis_x_ups_axes2_y = v->inv_ups_q_3*ups_S_y;
+    v->axis_x_ups_axes2_z = v->inv_ups_q_3*ups_S_z;
     /* (ups-qd_1) rate of joint 1 */
-    const real axis_z_ups_axes2_x = m->ups_base_frame_xy[i]*ups_c_1 -
-        m->ups_base_frame_xx[i]*ups_s_1;
-    const real axis_z_ups_axes2_y = m->ups_base_frame_yy[i]*ups_c_1 -
-        m->ups_base_frame_yx[i]*ups_s_1;
-    const real axis_z_ups_axes2_z = m->ups_base_frame_zy[i]*ups_c_1 -
-        m->ups_base_frame_zx[i]*ups_s_1;
+    v->axis_z_ups_axes2_x = m->ups_base_frame_xy[i]*v->ups_c_1 -
+        m->ups_base_frame_xx[i]*v->ups_s_1;
+    v->axis_z_ups_axes2_y = m->ups_base_frame_yy[i]*v->ups_c_1 -
+        m->ups_base_frame_yx[i]*v->ups_s_1;
+    v->axis_z_ups_axes2_z = m->ups_base_frame_zy[i]*v->ups_c_1 -
+        m->ups_base_frame_zx[i]*v->ups_s_1;
     /* (ups-qd_2) rate of joint 2 */
-    const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-        axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-    const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-        axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-    const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-        axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-    /* (ups-omega_1) angular velocity of link 1 */
-    const real ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z;
-    /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real ups_g_in_axes2_z = m->ups_acc_3_t_2[i]*ups_c_1 - m->ups_acc_3_t[i]*ups_s_1;
-    /* (ups-w_2) reciprocal vector 2 */
-    const real ups_w_2_in_axes2_y = 1/ups_q_3;
-    /* (ups-w_3) reciprocal vector 3 */
-    const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
-    const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
-    const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
-    v->ups_q_x = ups_q_x;
-    v->ups_q_y = ups_q_y;
-    v->ups_q_z = ups_q_z;
-    v->ups_S_in_turn1_z = ups_S_in_turn1_z;
-    v->ups_root_1_t = ups_root_1_t;
-    v->ups_root_1 = ups_root_1;
-    v->inv_ups_root_1 = inv_ups_root_1;
-    v->ups_c_1 = ups_c_1;
-    v->ups_s_1 = ups_s_1;
-    v->ups_q_3_t = ups_q_3_t;
-    v->ups_q_3 = ups_q_3;
-    v->inv_ups_q_3 = inv_ups_q_3;
-    v->ups_c_2 = ups_c_2;
-    v->axis_x_ups_axes2_x = axis_x_ups_axes2_x;
-    v->axis_x_ups_axes2_y = axis_x_ups_axes2_y;
-    v->axis_x_ups_axes2_z = axis_x_ups_axes2_z;
-    v->axis_z_ups_axes2_x = axis_z_ups_axes2_x;
-    v->axis_z_ups_axes2_y = axis_z_ups_axes2_y;
-    v->axis_z_ups_axes2_z = axis_z_ups_axes2_z;
-    v->axis_y_ups_axes2_x = axis_y_ups_axes2_x;
-    v->axis_y_ups_axes2_y = axis_y_ups_axes2_y;
-    v->axis_y_ups_axes2_z = axis_y_ups_axes2_z;
-    v->ups_e_1_in_axes2_x = ups_e_1_in_axes2_x;
-    v->ups_g_in_axes2_z = ups_g_in_axes2_z;
-    v->ups_w_2_in_axes2_y = ups_w_2_in_axes2_y;
-    v->ups_w_3_x = ups_w_3_x;
-    v->ups_w_3_y = ups_w_3_y;
-    v->ups_w_3_z = ups_w_3_z;
+    v->axis_y_ups_axes2_x = v->axis_x_ups_axes2_z*v->axis_z_ups_axes2_y -
+        v->axis_x_ups_axes2_y*v->axis_z_ups_axes2_z;
+    v->axis_y_ups_axes2_y = v->axis_x_ups_axes2_x*v->axis_z_ups_axes2_z -
+        v->axis_x_ups_axes2_z*v->axis_z_ups_axes2_x;
+    v->axis_y_ups_axes2_z = v->axis_x_ups_axes2_y*v->axis_z_ups_axes2_x -
+        v->axis_x_ups_axes2_x*v->axis_z_ups_axes2_y;
+    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real ups_acc_3_t_4 = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
+    v->ups_g_in_axes2_z = m->ups_acc_3_t_2[i]*v->ups_c_1 - m->ups_acc_3_t[i]*v->ups_s_1;
+    v->ups_g_in_axes2_x = m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x +
+        ups_acc_3_t_4*v->ups_c_2;
+    v->ups_g_in_axes2_y = ups_acc_3_t_4*v->ups_e_1_in_axes2_x -
+        m->ups_acc_3_t_3[i]*v->ups_c_2;
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    v->ups_mu_2_t_5 = v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_y[i] -
+        v->ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_z[i];
+    v->ups_mu_2_t_6 = v->ups_g_in_axes2_x*m->ups_h_group_2_in_axes2_z[i] -
+        v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_x[i];
+    v->ups_mu_2_t_7 = v->ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_x[i] -
+        v->ups_g_in_axes2_x*m->ups_h_group_2_in_axes2_y[i];
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    v->ups_H_a_3_x = v->axis_x_ups_axes2_z*v->ups_q_y - v->axis_x_ups_axes2_y*v->ups_q_z;
+    v->ups_H_a_3_y = v->axis_x_ups_axes2_x*v->ups_q_z - v->axis_x_ups_axes2_z*v->ups_q_x;
+    v->ups_H_a_3_z = v->axis_x_ups_axes2_y*v->ups_q_x - v->axis_x_ups_axes2_x*v->ups_q_y;
 }
 
-INLINE void stage_ups_A_X(size_t w, size_t j, const real *A, values_ups *v)
-{
-    /* (ups-a_p) acceleration of the connection point without its centripetal part */
-    const real alpha_y = A[4*w + j];
-    const real alpha_z = A[5*w + j];
-    const real t_ddot_x = A[0*w + j];
-    const real ups_a_p_x = t_ddot_x + alpha_y*v->ups_q_z - alpha_z*v->ups_q_y;
-    const real alpha_x = A[3*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real ups_a_p_y = t_ddot_y + alpha_z*v->ups_q_x - alpha_x*v->ups_q_z;
-    const real t_ddot_z = A[2*w + j];
-    const real ups_a_p_z = t_ddot_z + alpha_x*v->ups_q_y - alpha_y*v->ups_q_x;
-    v->ups_a_p_x = ups_a_p_x;
-    v->ups_a_p_y = ups_a_p_y;
-    v->ups_a_p_z = ups_a_p_z;
-}
-
-INLINE void stage_ups_V_X(size_t w, size_t j, const real *V, values_ups *v)
+INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_ups *v)
 {
     /* (ups-S_dot) velocity of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real ups_S_dot_t = omega_y*v->ups_q_z - omega_z*v->ups_q_y;
+    v->ups_S_dot_t = omega_y*v->ups_q_z - omega_z*v->ups_q_y;
     const real omega_x = V[3*w + j];
-    const real ups_S_dot_t_2 = omega_z*v->ups_q_x - omega_x*v->ups_q_z;
-    const real ups_S_dot_t_3 = omega_x*v->ups_q_y - omega_y*v->ups_q_x;
+    v->ups_S_dot_t_2 = omega_z*v->ups_q_x - omega_x*v->ups_q_z;
+    v->ups_S_dot_t_3 = omega_x*v->ups_q_y - omega_y*v->ups_q_x;
     const real t_dot_x = V[0*w + j];
-    const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
+    const real ups_S_dot_x = t_dot_x + v->ups_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
+    const real ups_S_dot_y = t_dot_y + v->ups_S_dot_t_2;
     const real t_dot_z = V[2*w + j];
-    const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-    const real ups_S_dot_in_axes2_x = v->axis_x_ups_axes2_x*ups_S_dot_x +
+    const real ups_S_dot_z = t_dot_z + v->ups_S_dot_t_3;
+    v->ups_S_dot_in_axes2_x = v->axis_x_ups_axes2_x*ups_S_dot_x +
         v->axis_x_ups_axes2_y*ups_S_dot_y + v->axis_x_ups_axes2_z*ups_S_dot_z;
     /* (ups-qd_1) rate of joint 1 */
-    const real ups_qd_1 = v->inv_ups_root_1*(v->axis_z_ups_axes2_x*ups_S_dot_x +
+    v->ups_qd_1 = v->inv_ups_root_1*(v->axis_z_ups_axes2_x*ups_S_dot_x +
         v->axis_z_ups_axes2_y*ups_S_dot_y + v->axis_z_ups_axes2_z*ups_S_dot_z);
     /* (ups-qd_2) rate of joint 2 */
-    const real ups_qd_2 = v->inv_ups_q_3*(v->axis_y_ups_axes2_x*ups_S_dot_x +
+    v->ups_qd_2 = v->inv_ups_q_3*(v->axis_y_ups_axes2_x*ups_S_dot_x +
         v->axis_y_ups_axes2_y*ups_S_dot_y + v->axis_y_ups_axes2_z*ups_S_dot_z);
     /* (ups-omega_1) angular velocity of link 1 */
-    const real ups_omega_1_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qd_1;
-    const real ups_omega_1_in_axes2_y = -v->ups_c_2*ups_qd_1;
+    const real ups_omega_1_in_axes2_x = v->ups_e_1_in_axes2_x*v->ups_qd_1;
+    const real ups_omega_1_in_axes2_y = -v->ups_c_2*v->ups_qd_1;
     /* (ups-W_2) centripetal tensor of link 2 */
-    const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-    const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-    const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+    v->ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*v->ups_qd_2;
+    v->ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*v->ups_qd_2;
+    const real ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+    const real ups_W_2_t_2 = v->ups_qd_2*v->ups_qd_2;
+    v->ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2;
+    v->ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
     /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-    const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-    const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*v->ups_q_3 -
+    const real ups_bias_t = 2*v->ups_S_dot_in_axes2_x;
+    v->ups_bias_in_axes2_z = 2*v->ups_W_2_in_axes2_xz*v->ups_q_3 -
         ups_bias_t*ups_omega_1_in_axes2_y;
-    v->ups_S_dot_t = ups_S_dot_t;
-    v->ups_S_dot_t_2 = ups_S_dot_t_2;
-    v->ups_S_dot_t_3 = ups_S_dot_t_3;
-    v->ups_qd_1 = ups_qd_1;
-    v->ups_qd_2 = ups_qd_2;
-    v->ups_omega_1_in_axes2_x = ups_omega_1_in_axes2_x;
-    v->ups_omega_1_in_axes2_y = ups_omega_1_in_axes2_y;
-    v->ups_W_2_in_axes2_yz = ups_W_2_in_axes2_yz;
-    v->ups_W_2_in_axes2_xz = ups_W_2_in_axes2_xz;
-    v->ups_W_2_in_axes2_xy = ups_W_2_in_axes2_xy;
-    v->ups_bias_t = ups_bias_t;
-    v->ups_bias_in_axes2_z = ups_bias_in_axes2_z;
+    /* (ups-qdd_2) acceleration of joint 2 */
+    v->ups_qdd_2_t = ups_bias_t*v->ups_qd_2;
+    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+    v->ups_phi_3_t = v->ups_W_2_in_axes2_xx*m->ups_h_3_in_spec2_x[i];
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+    v->ups_mu_2_t_2 = m->ups_J_group_2_in_axes2_yz[i]*(ups_W_2_t - ups_W_2_t_2);
+    v->ups_mu_2_t_3 = m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_t - ups_W_2_t_2);
+    v->ups_mu_2_t_4 = m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_t - ups_W_2_t);
+    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->ups_c_t = m->ups_h_3_in_spec2_z[i]*(ups_W_2_t_2 + ups_mu_2_t);
+    v->ups_c_t_2 = m->ups_h_3_in_spec2_y[i]*(ups_W_2_t + ups_mu_2_t);
 }
 
-INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *V, values_ups *v)
+INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *s, const real *A, values_ups *v)
 {
     /* (ups-S_ddot) acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real ups_S_ddot_x = omega_y*v->ups_S_dot_t_3 - omega_z*v->ups_S_dot_t_2 +
-        v->ups_a_p_x;
-    const real omega_x = V[3*w + j];
-    const real ups_S_ddot_y = omega_z*v->ups_S_dot_t - omega_x*v->ups_S_dot_t_3 +
-        v->ups_a_p_y;
-    const real ups_S_ddot_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t +
-        v->ups_a_p_z;
-    v->ups_S_ddot_x = ups_S_ddot_x;
-    v->ups_S_ddot_y = ups_S_ddot_y;
-    v->ups_S_ddot_z = ups_S_ddot_z;
+    const real B_p_xy = s[9*w + j];
+    const real B_p_xz = s[10*w + j];
+    const real W_p_t_4 = s[11*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real ups_S_ddot_x = t_ddot_x + B_p_xy*v->ups_q_y + B_p_xz*v->ups_q_z -
+        W_p_t_4*v->ups_q_x;
+    const real B_p_yx = s[12*w + j];
+    const real B_p_yz = s[13*w + j];
+    const real W_p_t_5 = s[14*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real ups_S_ddot_y = t_ddot_y + B_p_yx*v->ups_q_x + B_p_yz*v->ups_q_z -
+        W_p_t_5*v->ups_q_y;
+    const real B_p_zx = s[15*w + j];
+    const real B_p_zy = s[16*w + j];
+    const real W_p_t_6 = s[17*w + j];
+    const real t_ddot_z = A[2*w + j];
+    const real ups_S_ddot_z = t_ddot_z + B_p_zx*v->ups_q_x + B_p_zy*v->ups_q_y -
+        W_p_t_6*v->ups_q_z;
+    v->ups_S_ddot_in_axes2_x = v->axis_x_ups_axes2_x*ups_S_ddot_x +
+        v->axis_x_ups_axes2_y*ups_S_ddot_y + v->axis_x_ups_axes2_z*ups_S_ddot_z;
+    v->ups_S_ddot_t = v->axis_y_ups_axes2_x*ups_S_ddot_x;
+    v->ups_S_ddot_t_2 = v->axis_y_ups_axes2_y*ups_S_ddot_y;
+    v->ups_S_ddot_t_3 = v->axis_y_ups_axes2_z*ups_S_ddot_z;
+    v->ups_S_ddot_in_axes2_z = v->axis_z_ups_axes2_x*ups_S_ddot_x +
+        v->axis_z_ups_axes2_y*ups_S_ddot_y + v->axis_z_ups_axes2_z*ups_S_ddot_z;
+    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+    const real ups_rel_in_axes2_z = v->ups_S_ddot_in_axes2_z - v->ups_bias_in_axes2_z;
+    /* (ups-qdd_1) acceleration of joint 1 */
+    v->ups_qdd_1 = v->inv_ups_root_1*ups_rel_in_axes2_z;
+    /* (ups-qdd_2) acceleration of joint 2 */
+    v->ups_qdd_2_t_2 = v->inv_ups_q_3*(v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3
+        - v->ups_qdd_2_t);
+    v->ups_qdd_2 = v->ups_qdd_2_t_2 - v->ups_W_2_in_axes2_xy;
+}
+
+INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
+{
+    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real ups_d_alpha_1_in_axes2_xz = v->inv_ups_root_1*v->ups_e_1_in_axes2_x;
+    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+       about its reference point */
+    const real ups_d_phi_3_in_axes2_xy = v->inv_ups_q_3*m->ups_h_3_in_spec2_z[i];
+    const real ups_d_phi_3_in_axes2_yy = v->inv_ups_q_3*m->ups_h_3_in_spec2_x[i];
+    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real ups_d_c_in_axes2_xz = v->inv_ups_q_3*m->ups_h_3_in_spec2_y[i];
+    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+        v->inv_ups_q_3*(m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_q_3*m->ups_J_group_2_in_axes2_zz[i]);
+    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
+        v->inv_ups_q_3*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
+        v->inv_ups_q_3*m->ups_J_group_2_in_axes2_yz[i]);
+    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
+        ups_d_phi_3_in_axes2_yy -
+        v->inv_ups_root_1*(v->ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
+        - m->ups_h_3_in_spec2_z[i] - v->inv_ups_q_3*m->ups_J_group_2_in_axes2_xy[i]) -
+        v->ups_c_2*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz -
+        m->ups_h_3_in_spec2_x[i] - v->inv_ups_q_3*m->ups_J_group_2_in_axes2_yy[i]));
+    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+    const real ups_Q_t_3 = v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_x*ups_Q_t - v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_4 = v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_y*ups_Q_t - v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_5 = v->axis_y_ups_axes2_z*ups_Q_t -
+        v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
+        v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_6 = v->axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
+        v->axis_z_ups_axes2_x*ups_Q_t_2;
+    const real ups_Q_t_7 = v->axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
+        v->axis_z_ups_axes2_y*ups_Q_t_2;
+    const real ups_Q_t_8 = v->axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
+        v->axis_z_ups_axes2_z*ups_Q_t_2;
+    const real ups_Q_t_9 = v->axis_z_ups_axes2_x*ups_Q_t_6 - v->axis_y_ups_axes2_x*ups_Q_t_3;
+    v->ups_Q_xx = -2*ups_Q_t_9;
+    v->ups_Q_xy = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 -
+        v->axis_z_ups_axes2_x*ups_Q_t_7 - v->axis_z_ups_axes2_y*ups_Q_t_6;
+    v->ups_Q_xz = v->axis_y_ups_axes2_z*ups_Q_t_3 - v->axis_y_ups_axes2_x*ups_Q_t_5 -
+        v->axis_z_ups_axes2_x*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_6;
+    const real ups_Q_t_10 = v->axis_z_ups_axes2_y*ups_Q_t_7 - v->axis_y_ups_axes2_y*ups_Q_t_4;
+    v->ups_Q_yy = -2*ups_Q_t_10;
+    v->ups_Q_yz = v->axis_y_ups_axes2_z*ups_Q_t_4 - v->axis_y_ups_axes2_y*ups_Q_t_5 -
+        v->axis_z_ups_axes2_y*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_7;
+    const real ups_Q_t_11 = v->axis_y_ups_axes2_z*ups_Q_t_5 + v->axis_z_ups_axes2_z*ups_Q_t_8;
+    v->ups_Q_zz = -2*ups_Q_t_11;
+    /* (M_ta) coupling block of M */
+    const real ups_M_ta_t = v->ups_Q_xy*v->ups_q_z;
+    const real ups_M_ta_t_2 = v->ups_Q_xz*v->ups_q_y;
+    v->ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
+    v->ups_M_ta_t_4 = v->ups_Q_xx*v->ups_q_z - v->ups_Q_xz*v->ups_q_x;
+    v->ups_M_ta_t_5 = v->ups_Q_xy*v->ups_q_x - v->ups_Q_xx*v->ups_q_y;
+    v->ups_M_ta_t_6 = v->ups_Q_yz*v->ups_q_y - v->ups_Q_yy*v->ups_q_z;
+    const real ups_M_ta_t_7 = v->ups_Q_yz*v->ups_q_x;
+    v->ups_M_ta_t_8 = ups_M_ta_t_7 - ups_M_ta_t;
+    v->ups_M_ta_t_9 = v->ups_Q_yy*v->ups_q_x - v->ups_Q_xy*v->ups_q_y;
+    v->ups_M_ta_t_10 = v->ups_Q_zz*v->ups_q_y - v->ups_Q_yz*v->ups_q_z;
+    v->ups_M_ta_t_11 = v->ups_Q_xz*v->ups_q_z - v->ups_Q_zz*v->ups_q_x;
+    v->ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
+    /* (M_aa) rotational block of M */
+    v->ups_M_aa_t = v->ups_M_ta_t_10*v->ups_q_y - v->ups_M_ta_t_6*v->ups_q_z;
+    v->ups_M_aa_t_2 = v->ups_M_ta_t_11*v->ups_q_y + v->ups_M_ta_t_8*v->ups_q_z;
+    v->ups_M_aa_t_3 = v->ups_M_ta_t_12*v->ups_q_y - v->ups_M_ta_t_9*v->ups_q_z;
+    v->ups_M_aa_t_4 = v->ups_M_ta_t_4*v->ups_q_z - v->ups_M_ta_t_11*v->ups_q_x;
+    v->ups_M_aa_t_5 = v->ups_M_ta_t_5*v->ups_q_z - v->ups_M_ta_t_12*v->ups_q_x;
+    v->ups_M_aa_t_6 = v->ups_M_ta_t_9*v->ups_q_x - v->ups_M_ta_t_5*v->ups_q_y;
 }
 
 INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1960,6 +2033,12 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real omega_x = V[3*w + j];
     const real ups_u_1_y = omega_z*v->ups_S_dot_t - omega_x*v->ups_S_dot_t_3;
     const real ups_u_1_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t;
+    const real ups_u_1_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
+        v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z;
+    const real ups_u_1_t = v->axis_y_ups_axes2_x*ups_u_1_x;
+    const real ups_u_1_t_2 = v->axis_y_ups_axes2_y*ups_u_1_y;
+    const real ups_u_1_t_3 = v->axis_y_ups_axes2_z*ups_u_1_z;
+    const real ups_u_1_in_axes2_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3;
     const real ups_u_1_in_axes2_z = v->axis_z_ups_axes2_x*ups_u_1_x +
         v->axis_z_ups_axes2_y*ups_u_1_y + v->axis_z_ups_axes2_z*ups_u_1_z;
     /* (ups-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
@@ -1974,198 +2053,112 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_alpha_2_o_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
     const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
     /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real ups_B_2_o_t = v->axis_y_ups_axes2_x*ups_u_1_x;
-    const real ups_B_2_o_t_2 = v->axis_y_ups_axes2_y*ups_u_1_y;
-    const real ups_B_2_o_t_3 = v->axis_y_ups_axes2_z*ups_u_1_z;
-    const real ups_B_2_o_in_axes2_yx = v->inv_ups_q_3*(ups_B_2_o_t + ups_B_2_o_t_2 +
-        ups_B_2_o_t_3 - v->ups_bias_t*v->ups_qd_2);
+    const real ups_B_2_o_in_axes2_yx = v->inv_ups_q_3*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 -
+        v->ups_qdd_2_t);
     const real ups_B_2_o_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
     const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
     const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
-    /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real ups_acc_3_o_t = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
-    const real ups_g_in_axes2_x = ups_acc_3_o_t*v->ups_c_2 +
-        m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x;
-    const real ups_g_in_axes2_y = ups_acc_3_o_t*v->ups_e_1_in_axes2_x -
-        m->ups_acc_3_t_3[i]*v->ups_c_2;
-    const real ups_acc_3_o_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
-        v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
-    const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t - ups_g_in_axes2_y + ups_B_2_o_t_2 +
-        ups_B_2_o_t_3;
-    const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_g_in_axes2_z;
     /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
        */
-    const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
-    const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
-    const real ups_phi_3_o_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t -
-        ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+    const real ups_phi_3_o_in_axes2_x = v->ups_phi_3_t -
+        ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
         ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
-    const real ups_mu_2_o_in_axes2_x = v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
-        ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
-        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
-        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+    const real ups_mu_2_o_in_axes2_x = v->ups_mu_2_t_2 - v->ups_mu_2_t_5 -
+        m->ups_h_3_in_spec2_z[i]*ups_u_1_in_axes2_z -
+        m->ups_h_3_in_spec2_y[i]*ups_u_1_in_axes2_y +
         ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
         m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_x +
         ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
         ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
-    const real ups_mu_2_o_in_axes2_y = v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
-        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+    const real ups_mu_2_o_in_axes2_y = m->ups_h_3_in_spec2_y[i]*ups_u_1_in_axes2_x -
+        v->ups_mu_2_t_6 - m->ups_h_3_in_spec2_x[i]*ups_u_1_in_axes2_z - v->ups_mu_2_t_3 -
         ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
         m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
         ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
         ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_mu_2_o_in_axes2_z = ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
-        ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] - ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i]
-        + ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
-        ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) -
+    const real ups_mu_2_o_in_axes2_z = m->ups_h_3_in_spec2_z[i]*ups_u_1_in_axes2_x -
+        v->ups_mu_2_t_7 + m->ups_h_3_in_spec2_x[i]*ups_u_1_in_axes2_y + v->ups_mu_2_t_4 +
+        ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] -
         ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
         m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_in_axes2_x +
         m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y;
     /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2) -
+        v->ups_c_t - ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
         v->inv_ups_q_3*ups_mu_2_o_in_axes2_z;
-    const real ups_c_o_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) +
+    const real ups_c_o_in_axes2_z = v->ups_c_t_2 +
         ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
         ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
         v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
         v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x);
     /* (ups-U) velocity and gravity terms of the leg force */
-    const real ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
+    v->ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
-    const real ups_U_y = v->axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
+    v->ups_U_y = v->axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_y*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
-    const real ups_U_z = v->axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
+    v->ups_U_z = v->axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_z*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
     /* (Z_a) rotational part of Z */
-    const real ups_Z_a_t = ups_U_z*v->ups_q_y - ups_U_y*v->ups_q_z;
-    const real ups_Z_a_t_2 = ups_U_x*v->ups_q_z - ups_U_z*v->ups_q_x;
-    const real ups_Z_a_t_3 = ups_U_y*v->ups_q_x - ups_U_x*v->ups_q_y;
-    v->ups_U_x = ups_U_x;
-    v->ups_U_y = ups_U_y;
-    v->ups_U_z = ups_U_z;
-    v->ups_Z_a_t = ups_Z_a_t;
-    v->ups_Z_a_t_2 = ups_Z_a_t_2;
-    v->ups_Z_a_t_3 = ups_Z_a_t_3;
-}
-
-INLINE void stage_ups_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_ups *v)
-{
-    /* (ups-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real ups_S_x = t_x - m->ups_base_point_x[i] + R_xy*m->ups_platform_point_y[i] +
-        R_xz*m->ups_platform_point_z[i] + R_xx*m->ups_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real ups_S_y = t_y - m->ups_base_point_y[i] + R_yx*m->ups_platform_point_x[i] +
-        R_yz*m->ups_platform_point_z[i] + R_yy*m->ups_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real ups_S_z = t_z - m->ups_base_point_z[i] + R_zx*m->ups_platform_point_x[i] +
-        R_zy*m->ups_platform_point_y[i] + R_zz*m->ups_platform_point_z[i];
-    const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
-        ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
-    const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
-        ups_S_y*m->ups_base_frame_yy[i] + ups_S_z*m->ups_base_frame_zy[i];
-    const real ups_S_in_turn1_z = ups_S_x*m->ups_base_frame_xz[i] +
-        ups_S_y*m->ups_base_frame_yz[i] + ups_S_z*m->ups_base_frame_zz[i];
-    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
-        ups_S_in_turn1_y*ups_S_in_turn1_y;
-    const real ups_root_1 = m->ups_branch_1[i]*root(ups_root_1_t);
-    /* (ups-q_1) displacement of joint 1 */
-    const real inv_ups_root_1 = 1/ups_root_1;
-    /* (ups-q_3) displacement of joint 3 */
-    const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
-    const real ups_q_3 = m->ups_branch_2[i]*root(ups_q_3_t);
-    /* (ups-q_2) displacement of joint 2 */
-    const real inv_ups_q_3 = 1/ups_q_3;
-    v->ups_S_in_turn1_x = ups_S_in_turn1_x;
-    v->ups_S_in_turn1_y = ups_S_in_turn1_y;
-    v->ups_S_in_turn1_z = ups_S_in_turn1_z;
-    v->ups_root_1_t = ups_root_1_t;
-    v->ups_root_1 = ups_root_1;
-    v->inv_ups_root_1 = inv_ups_root_1;
-    v->ups_q_3_t = ups_q_3_t;
-    v->ups_q_3 = ups_q_3;
-    v->inv_ups_q_3 = inv_ups_q_3;
+    v->ups_Z_a_t = v->ups_U_z*v->ups_q_y - v->ups_U_y*v->ups_q_z;
+    v->ups_Z_a_t_2 = v->ups_U_x*v->ups_q_z - v->ups_U_z*v->ups_q_x;
+    v->ups_Z_a_t_3 = v->ups_U_y*v->ups_q_x - v->ups_U_x*v->ups_q_y;
 }
 
 INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
 {
     /* (ups-S_ddot) acceleration of the connection point */
-    const real ups_S_ddot_in_axes2_z = v->axis_z_ups_axes2_x*v->ups_S_ddot_x +
-        v->axis_z_ups_axes2_y*v->ups_S_ddot_y + v->axis_z_ups_axes2_z*v->ups_S_ddot_z;
-    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-    const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_bias_in_axes2_z;
-    /* (ups-qdd_1) acceleration of joint 1 */
-    const real ups_qdd_1 = v->inv_ups_root_1*ups_rel_in_axes2_z;
+    v->ups_S_ddot_in_axes2_y = v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3;
     /* (ups-alpha_1) angular acceleration of link 1 */
-    const real ups_alpha_1_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1;
-    const real ups_alpha_1_in_axes2_y = -v->ups_c_2*ups_qdd_1;
+    const real ups_alpha_1_in_axes2_x = v->ups_e_1_in_axes2_x*v->ups_qdd_1;
+    const real ups_alpha_1_in_axes2_y = -v->ups_c_2*v->ups_qdd_1;
     /* (ups-alpha_2) angular acceleration of link 2 */
     const real ups_alpha_2_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
     const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - v->ups_W_2_in_axes2_xz;
     /* (ups-B_2) acceleration tensor of link 2 */
-    const real ups_B_2_t = v->axis_y_ups_axes2_x*v->ups_S_ddot_x;
-    const real ups_B_2_t_2 = v->axis_y_ups_axes2_y*v->ups_S_ddot_y;
-    const real ups_B_2_t_3 = v->axis_y_ups_axes2_z*v->ups_S_ddot_z;
-    const real ups_B_2_in_axes2_yx = v->inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-        v->ups_bias_t*v->ups_qd_2);
-    const real ups_B_2_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
+    const real ups_B_2_in_axes2_xy = v->ups_W_2_in_axes2_xy - v->ups_qdd_2;
     const real ups_B_2_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
     const real ups_B_2_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
-    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real ups_acc_3_t_4 = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
-    const real ups_g_in_axes2_x = m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x +
-        ups_acc_3_t_4*v->ups_c_2;
-    const real ups_g_in_axes2_y = ups_acc_3_t_4*v->ups_e_1_in_axes2_x -
-        m->ups_acc_3_t_3[i]*v->ups_c_2;
-    const real ups_acc_3_in_axes2_x = v->axis_x_ups_axes2_x*v->ups_S_ddot_x +
-        v->axis_x_ups_axes2_y*v->ups_S_ddot_y + v->axis_x_ups_axes2_z*v->ups_S_ddot_z -
-        ups_g_in_axes2_x;
-    const real ups_acc_3_in_axes2_y = ups_B_2_t - ups_g_in_axes2_y + ups_B_2_t_2 +
-        ups_B_2_t_3;
-    const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_g_in_axes2_z;
+    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+    v->ups_phi_3_in_axes2_x = v->ups_phi_3_t + ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i]
+        - ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
-    v->ups_alpha_1_in_axes2_x = ups_alpha_1_in_axes2_x;
-    v->ups_alpha_1_in_axes2_y = ups_alpha_1_in_axes2_y;
-    v->ups_B_2_in_axes2_yx = ups_B_2_in_axes2_yx;
-    v->ups_B_2_in_axes2_xy = ups_B_2_in_axes2_xy;
-    v->ups_B_2_in_axes2_zx = ups_B_2_in_axes2_zx;
-    v->ups_B_2_in_axes2_zy = ups_B_2_in_axes2_zy;
-    v->ups_g_in_axes2_x = ups_g_in_axes2_x;
-    v->ups_g_in_axes2_y = ups_g_in_axes2_y;
-    v->ups_acc_3_in_axes2_x = ups_acc_3_in_axes2_x;
-    v->ups_acc_3_in_axes2_y = ups_acc_3_in_axes2_y;
-    v->ups_acc_3_in_axes2_z = ups_acc_3_in_axes2_z;
-    v->ups_mu_2_t = ups_mu_2_t;
+    const real ups_mu_2_in_axes2_x = v->ups_mu_2_t_2 - v->ups_mu_2_t_5 -
+        v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*v->ups_qdd_2_t_2 +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_in_axes2_x +
+        ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_in_axes2_y = v->ups_S_ddot_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
+        v->ups_mu_2_t_6 - v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_x[i] - v->ups_mu_2_t_3
+        + m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_in_axes2_y -
+        ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_in_axes2_z = v->ups_S_ddot_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
+        v->ups_mu_2_t_7 + v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_x[i] + v->ups_mu_2_t_4
+        + m->ups_Sigma_2_in_axes2_xx[i]*v->ups_qdd_2_t_2 +
+        m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_in_axes2_y -
+        ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i];
+    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] - v->ups_c_t -
+        m->ups_h_3_in_spec2_x[i]*v->ups_qdd_2_t_2 - v->inv_ups_q_3*ups_mu_2_in_axes2_z;
+    v->ups_c_in_axes2_z = v->ups_c_t_2 + ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_in_axes2_y -
+        v->ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2177,30 +2170,28 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
-    stage_V_X(w, k, V, v);
-    stage_M_dynamics(m, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
-    s[18*w + k] = v->Z_p_x;
-    s[19*w + k] = v->Z_p_y;
-    s[20*w + k] = v->Z_p_z;
-    s[21*w + k] = v->Z_q_x;
-    s[22*w + k] = v->Z_q_y;
-    s[23*w + k] = v->Z_q_z;
+    s[27*w + k] = v->Z_p_x;
+    s[28*w + k] = v->Z_p_y;
+    s[29*w + k] = v->Z_p_z;
+    s[30*w + k] = v->Z_q_x;
+    s[31*w + k] = v->Z_q_y;
+    s[32*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2208,105 +2199,33 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    stage_ups_V_X(w, j, V, &v);
+    stage_ups_V_X(m, w, i, j, V, &v);
+    stage_ups_M_dynamics(m, i, &v);
     stage_ups_Z_dynamics(m, w, i, j, V, &v);
-    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*v.ups_e_1_in_axes2_x;
-    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
-    const real ups_d_phi_3_in_axes2_xy = v.inv_ups_q_3*m->ups_h_3_in_spec2_z[i];
-    const real ups_d_phi_3_in_axes2_yy = v.inv_ups_q_3*m->ups_h_3_in_spec2_x[i];
-    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real ups_d_c_in_axes2_xz = v.inv_ups_q_3*m->ups_h_3_in_spec2_y[i];
-    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-        v.inv_ups_q_3*(m->ups_h_3_in_spec2_x[i] +
-        v.inv_ups_q_3*m->ups_J_group_2_in_axes2_zz[i]);
-    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
-        v.inv_ups_q_3*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
-        v.inv_ups_q_3*m->ups_J_group_2_in_axes2_yz[i]);
-    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
-        ups_d_phi_3_in_axes2_yy -
-        v.inv_ups_root_1*(v.ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
-        - m->ups_h_3_in_spec2_z[i] - v.inv_ups_q_3*m->ups_J_group_2_in_axes2_xy[i]) -
-        v.ups_c_2*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz -
-        m->ups_h_3_in_spec2_x[i] - v.inv_ups_q_3*m->ups_J_group_2_in_axes2_yy[i]));
-    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
-    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-    const real ups_Q_t_3 = v.axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
-        v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
-        v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t -
-        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
-        v.axis_z_ups_axes2_x*ups_Q_t_2;
-    const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
-        v.axis_z_ups_axes2_y*ups_Q_t_2;
-    const real ups_Q_t_8 = v.axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
-        v.axis_z_ups_axes2_z*ups_Q_t_2;
-    const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - v.axis_y_ups_axes2_x*ups_Q_t_3;
-    const real ups_Q_xx = -2*ups_Q_t_9;
-    const real ups_Q_xy = v.axis_y_ups_axes2_x*ups_Q_t_4 + v.axis_y_ups_axes2_y*ups_Q_t_3 -
-        v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
-    const real ups_Q_xz = v.axis_y_ups_axes2_z*ups_Q_t_3 - v.axis_y_ups_axes2_x*ups_Q_t_5 -
-        v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
-    const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - v.axis_y_ups_axes2_y*ups_Q_t_4;
-    const real ups_Q_yy = -2*ups_Q_t_10;
-    const real ups_Q_yz = v.axis_y_ups_axes2_z*ups_Q_t_4 - v.axis_y_ups_axes2_y*ups_Q_t_5 -
-        v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
-    const real ups_Q_t_11 = v.axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
-    const real ups_Q_zz = -2*ups_Q_t_11;
-    /* (M_ta) coupling block of M */
-    const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
-    const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
-    const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
-    const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
-    const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
-    const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
-    const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
-    const real ups_M_ta_t_8 = ups_M_ta_t_7 - ups_M_ta_t;
-    const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
-    const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
-    const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
-    const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
-    /* (M_aa) rotational block of M */
-    const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
-    const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y + ups_M_ta_t_8*v.ups_q_z;
-    const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
-    const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
-    const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
-    const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-    const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
-    const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
-    const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.ups_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.ups_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.ups_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.ups_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.ups_M_ta_t_8);  /* M_ta_t */
+    gather(&terms[11*count + k], add, v.ups_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.ups_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.ups_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.ups_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.ups_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
     gather(&terms[21*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
     gather(&terms[22*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
@@ -2319,19 +2238,19 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     o[0*count + k] = v.axis_x_ups_axes2_x;
     o[1*count + k] = v.axis_x_ups_axes2_y;
     o[2*count + k] = v.axis_x_ups_axes2_z;
-    /* (ups-H_a_3) */
-    o[3*count + k] = ups_H_a_3_x;
-    o[4*count + k] = ups_H_a_3_y;
-    o[5*count + k] = ups_H_a_3_z;
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.ups_H_a_3_x;
+    o[4*count + k] = v.ups_H_a_3_y;
+    o[5*count + k] = v.ups_H_a_3_z;
     o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
-        (ups_H_a_3_x + (ups_H_a_3_y + ups_H_a_3_z));
+        (v.ups_H_a_3_x + (v.ups_H_a_3_y + v.ups_H_a_3_z));
     o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void dynamics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2344,7 +2263,7 @@ INLINE void dynamics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2355,58 +2274,58 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
-    const real Z_p_x = s[18*w + k];
+    const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[21*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
+    const real Z_p_y = s[28*w + k];
     const real Z_t_y_of_legs = sums[22*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
+    const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[23*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
-    const real Z_q_x = s[21*w + k];
+    const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
-    const real Z_q_y = s[22*w + k];
+    const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
-    const real Z_q_z = s[23*w + k];
+    const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2468,9 +2387,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
-    real s[24] = {0}, sums[27] = {0};
+    real s[33] = {0}, sums[27] = {0};
     real terms_ups[27*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] = {0};
     values v;
     dynamics_before(m, 1, 0, X, &v, s, t);
@@ -2488,9 +2407,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[27*LANES];
+    real s[33*LANES], sums[27*LANES];
     real o_ups[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2513,7 +2432,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 
 /* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2525,21 +2444,16 @@ INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, value
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
-{
-    stage_M_dynamics(m, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2547,114 +2461,43 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real ups_e_1_in_axes2_x = v.ups_S_in_turn1_z*v.ups_w_2_in_axes2_y;
-    const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*ups_e_1_in_axes2_x;
-    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
-    const real ups_d_phi_3_in_axes2_xy = m->ups_h_3_in_spec2_z[i]*v.ups_w_2_in_axes2_y;
-    const real ups_d_phi_3_in_axes2_yy = m->ups_h_3_in_spec2_x[i]*v.ups_w_2_in_axes2_y;
-    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real ups_d_c_in_axes2_xz = m->ups_h_3_in_spec2_y[i]*v.ups_w_2_in_axes2_y;
-    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-        v.ups_w_2_in_axes2_y*(m->ups_h_3_in_spec2_x[i] +
-        m->ups_J_group_2_in_axes2_zz[i]*v.ups_w_2_in_axes2_y);
-    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
-        v.ups_w_2_in_axes2_y*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_w_2_in_axes2_y);
-    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
-        ups_d_phi_3_in_axes2_yy -
-        v.inv_ups_root_1*(ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
-        - m->ups_h_3_in_spec2_z[i] - m->ups_J_group_2_in_axes2_xy[i]*v.ups_w_2_in_axes2_y) -
-        v.ups_root_1*v.ups_w_2_in_axes2_y*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz
-        - m->ups_h_3_in_spec2_x[i] - m->ups_J_group_2_in_axes2_yy[i]*v.ups_w_2_in_axes2_y));
-    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real axis_y_ups_axes2_x = v.axis_z_ups_axes2_y*v.ups_w_3_z -
-        v.axis_z_ups_axes2_z*v.ups_w_3_y;
-    const real axis_y_ups_axes2_y = v.axis_z_ups_axes2_z*v.ups_w_3_x -
-        v.axis_z_ups_axes2_x*v.ups_w_3_z;
-    const real axis_y_ups_axes2_z = v.axis_z_ups_axes2_x*v.ups_w_3_y -
-        v.axis_z_ups_axes2_y*v.ups_w_3_x;
-    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
-    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-    const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
-        v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
-        v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_6 = ups_d_c_in_axes2_xz*v.ups_w_3_x + v.axis_z_ups_axes2_x*ups_Q_t_2;
-    const real ups_Q_t_7 = ups_d_c_in_axes2_xz*v.ups_w_3_y + v.axis_z_ups_axes2_y*ups_Q_t_2;
-    const real ups_Q_t_8 = ups_d_c_in_axes2_xz*v.ups_w_3_z + v.axis_z_ups_axes2_z*ups_Q_t_2;
-    const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
-    const real ups_Q_xx = -2*ups_Q_t_9;
-    const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
-        v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
-    const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
-        v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
-    const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
-    const real ups_Q_yy = -2*ups_Q_t_10;
-    const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
-        v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
-    const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
-    const real ups_Q_zz = -2*ups_Q_t_11;
-    /* (M_ta) coupling block of M */
-    const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
-    const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
-    const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
-    const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
-    const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
-    const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
-    const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
-    const real ups_M_ta_t_8 = ups_M_ta_t_7 - ups_M_ta_t;
-    const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
-    const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
-    const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
-    const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
-    /* (M_aa) rotational block of M */
-    const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
-    const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y + ups_M_ta_t_8*v.ups_q_z;
-    const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
-    const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
-    const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
-    const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
+    stage_ups_M_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.ups_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.ups_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.ups_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.ups_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.ups_M_ta_t_8);  /* M_ta_t */
+    gather(&terms[11*count + k], add, v.ups_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.ups_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.ups_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.ups_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.ups_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void M_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2665,37 +2508,37 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -2749,9 +2592,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[18] = {0}, sums[21] = {0};
+    real s[27] = {0}, sums[21] = {0};
     real terms_ups[21*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     values v;
     M_before(m, 1, 0, X, &v, s, t);
@@ -2764,18 +2607,17 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
-    real s[18*LANES], sums[21*LANES];
+    real s[27*LANES], sums[21*LANES];
     real o_ups[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         M_before(m, LANES, k, X, &v, s, t);
-        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2793,7 +2635,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 
 /* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2810,14 +2652,13 @@ INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, value
 
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[9*w + k] = v->Z_p_x;
-    s[10*w + k] = v->Z_p_y;
-    s[11*w + k] = v->Z_p_z;
-    s[12*w + k] = v->Z_q_x;
-    s[13*w + k] = v->Z_q_y;
-    s[14*w + k] = v->Z_q_z;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2825,7 +2666,7 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    stage_ups_V_X(w, j, V, &v);
+    stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_Z_dynamics(m, w, i, j, V, &v);
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
@@ -2840,32 +2681,32 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void Z_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
-    const real Z_p_x = s[9*w + k];
+    const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[10*w + k];
+    const real Z_p_y = s[19*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[11*w + k];
+    const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[12*w + k];
+    const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[13*w + k];
+    const real Z_q_y = s[22*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[14*w + k];
+    const real Z_q_z = s[23*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
@@ -2878,9 +2719,9 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     values v;
     Z_before(m, 1, 0, X, &v, s, t);
@@ -2897,10 +2738,10 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_ups[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2923,7 +2764,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 
 /* ---- H ---- */
 INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2943,26 +2784,22 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-    const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
-    const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
-    const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
     /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.ups_w_3_x;
-    o[1*count + k] = v.ups_w_3_y;
-    o[2*count + k] = v.ups_w_3_z;
-    /* (ups-H_a_3) */
-    o[3*count + k] = ups_H_a_3_x;
-    o[4*count + k] = ups_H_a_3_y;
-    o[5*count + k] = ups_H_a_3_z;
-    o[7*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + (ups_H_a_3_x + (ups_H_a_3_y
-        + ups_H_a_3_z));
+    o[0*count + k] = v.axis_x_ups_axes2_x;
+    o[1*count + k] = v.axis_x_ups_axes2_y;
+    o[2*count + k] = v.axis_x_ups_axes2_z;
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.ups_H_a_3_x;
+    o[4*count + k] = v.ups_H_a_3_y;
+    o[5*count + k] = v.ups_H_a_3_z;
+    o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
+        (v.ups_H_a_3_x + (v.ups_H_a_3_y + v.ups_H_a_3_z));
     o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void H_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2974,9 +2811,9 @@ INLINE void H_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[7*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
     values v;
     H_before(m, 1, 0, X, &v, s, t);
@@ -2988,9 +2825,10 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_ups[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3007,10 +2845,12 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3020,20 +2860,21 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
-    /* (W_p) centripetal tensor of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real W_p_xy = omega_x*omega_y;
-    const real omega_z = V[5*w + k];
-    const real W_p_xz = omega_x*omega_z;
-    const real W_p_yz = omega_y*omega_z;
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -3045,28 +2886,31 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
     const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
-    const real f_p_t = omega_x*omega_x;
-    const real f_p_t_2 = omega_y*omega_y;
-    const real f_p_t_3 = omega_z*omega_z;
+    const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
+        v->W_p_t_4*v->h_star_x;
+    const real f_p_y = a_t_y*m->m_star + v->B_p_yx*v->h_star_x + v->B_p_yz*v->h_star_z -
+        v->W_p_t_5*v->h_star_y;
+    const real f_p_z = a_t_z*m->m_star + v->B_p_zx*v->h_star_x + v->B_p_zy*v->h_star_y -
+        v->W_p_t_6*v->h_star_z;
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    const real mu_p_t = m->J_star_in_platform_xx*omega_in_platform_x +
+        m->J_star_in_platform_xy*omega_in_platform_y +
+        m->J_star_in_platform_xz*omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*omega_in_platform_x +
+        m->J_star_in_platform_yy*omega_in_platform_y +
+        m->J_star_in_platform_yz*omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*omega_in_platform_x +
+        m->J_star_in_platform_yz*omega_in_platform_y +
+        m->J_star_in_platform_zz*omega_in_platform_z;
+    const real alpha_x = A[3*w + k];
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
-        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
-    const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
-        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
-        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
-    /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
@@ -3074,29 +2918,29 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
         a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
+        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
         a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
+        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
         a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
     const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
         v->R_xz*mu_p_in_platform_z;
     const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
         v->R_yz*mu_p_in_platform_z;
     const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
         v->R_zz*mu_p_in_platform_z;
-    s[9*w + k] = f_p_x;
-    s[10*w + k] = f_p_y;
-    s[11*w + k] = f_p_z;
-    s[12*w + k] = mu_p_x;
-    s[13*w + k] = mu_p_y;
-    s[14*w + k] = mu_p_z;
+    s[18*w + k] = f_p_x;
+    s[19*w + k] = f_p_y;
+    s[20*w + k] = f_p_z;
+    s[21*w + k] = mu_p_x;
+    s[22*w + k] = mu_p_y;
+    s[23*w + k] = mu_p_z;
 }
 
 INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3105,69 +2949,21 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    stage_ups_A_X(w, j, A, &v);
-    stage_ups_V_X(w, j, V, &v);
-    stage_ups_A_V_X(w, j, V, &v);
+    stage_ups_V_X(m, w, i, j, V, &v);
+    stage_ups_A_V_X(w, j, s, A, &v);
     stage_ups_legs_required(m, i, &v);
-    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
-    const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
-    const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_phi_3_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2)
-        - v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
-        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_t - ups_phi_3_t_2) +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
-    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
-        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2) -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
-    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
-        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
-    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y -
-        v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*ups_c_in_axes2_z;
-    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y -
-        v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*ups_c_in_axes2_z;
-    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y -
-        v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*ups_c_in_axes2_z;
+    const real ups_c_x = v.axis_y_ups_axes2_x*v.ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_x*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*v.ups_c_in_axes2_z;
+    const real ups_c_y = v.axis_y_ups_axes2_y*v.ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_y*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*v.ups_c_in_axes2_z;
+    const real ups_c_z = v.axis_y_ups_axes2_z*v.ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_z*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*v.ups_c_in_axes2_z;
     /* (R_a) moment that actuators and external wrench must give */
     const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
     const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
     const real ups_R_a_t_3 = ups_c_x*v.ups_q_y - ups_c_y*v.ups_q_x;
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-    const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
-    const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
-    const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
@@ -3180,17 +2976,17 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     o[0*count + k] = v.axis_x_ups_axes2_x;
     o[1*count + k] = v.axis_x_ups_axes2_y;
     o[2*count + k] = v.axis_x_ups_axes2_z;
-    /* (ups-H_a_3) */
-    o[3*count + k] = ups_H_a_3_x;
-    o[4*count + k] = ups_H_a_3_y;
-    o[5*count + k] = ups_H_a_3_z;
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.ups_H_a_3_x;
+    o[4*count + k] = v.ups_H_a_3_y;
+    o[5*count + k] = v.ups_H_a_3_z;
     o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void required_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -3205,23 +3001,23 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 {
     /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
-    const real f_p_x = s[9*w + k];
+    const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
-    const real f_p_y = s[10*w + k];
+    const real f_p_y = s[19*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
     const real R_t_z_of_legs = sums[2*w + k];
-    const real f_p_z = s[11*w + k];
+    const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
-    const real mu_p_x = s[12*w + k];
+    const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
-    const real mu_p_y = s[13*w + k];
+    const real mu_p_y = s[22*w + k];
     const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
-    const real mu_p_z = s[14*w + k];
+    const real mu_p_z = s[23*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
@@ -3234,12 +3030,12 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] = {0};
     values v;
-    required_before(m, 1, 0, X, &v, s, t);
+    required_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         required_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, A, terms_ups, o_ups);
     }
@@ -3255,7 +3051,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
 
 /* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, verdict *t)
+    *v, real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3274,12 +3070,11 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
     size_t count, const real *s, const real *X, real *o)
 {
     values_ups v;
-    stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    stage_ups_X(m, w, i, j, s, X, &v);
     /* (ups-q_1) displacement of joint 1 */
-    const real ups_q_1 = angle(v.inv_ups_root_1*v.ups_S_in_turn1_y,
-        v.inv_ups_root_1*v.ups_S_in_turn1_x);
+    const real ups_q_1 = angle(v.ups_s_1, v.ups_c_1);
     /* (ups-q_2) displacement of joint 2 */
-    const real ups_q_2 = angle(-v.inv_ups_q_3*v.ups_S_in_turn1_z, v.inv_ups_q_3*v.ups_root_1);
+    const real ups_q_2 = angle(-v.ups_e_1_in_axes2_x, v.ups_c_2);
     /* (ups-q_1) */
     o[0*count + k] = ups_q_1;
     /* (ups-q_2) */
@@ -3292,7 +3087,7 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
 }
 
 INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[3*i*w + k] = o[0*count + at];
     q[(1 + 3*i)*w + k] = o[1*count + at];
@@ -3301,9 +3096,9 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     values v;
     inverse_kinematics_before(m, 1, 0, X, &v, s, t);
@@ -3316,9 +3111,9 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3336,7 +3131,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 
 /* ---- joint_rates ---- */
 INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, verdict *t)
+    real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3356,43 +3151,21 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    /* (ups-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real ups_S_dot_x = t_dot_x + omega_y*v.ups_q_z - omega_z*v.ups_q_y;
-    const real omega_x = V[3*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real ups_S_dot_y = t_dot_y + omega_z*v.ups_q_x - omega_x*v.ups_q_z;
-    const real t_dot_z = V[2*w + j];
-    const real ups_S_dot_z = t_dot_z + omega_x*v.ups_q_y - omega_y*v.ups_q_x;
-    const real ups_S_dot_in_axes2_x = v.axis_x_ups_axes2_x*ups_S_dot_x +
-        v.axis_x_ups_axes2_y*ups_S_dot_y + v.axis_x_ups_axes2_z*ups_S_dot_z;
+    stage_ups_V_X(m, w, i, j, V, &v);
     /* (ups-qd_1) rate of joint 1 */
-    const real ups_qd_1 = v.inv_ups_root_1*(v.axis_z_ups_axes2_x*ups_S_dot_x +
-        v.axis_z_ups_axes2_y*ups_S_dot_y + v.axis_z_ups_axes2_z*ups_S_dot_z);
+    o[0*count + k] = v.ups_qd_1;
     /* (ups-qd_2) rate of joint 2 */
-    const real ups_qd_2 =
-        v.inv_ups_q_3*(ups_S_dot_x*(v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_y -
-        v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_z) +
-        ups_S_dot_y*(v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_z -
-        v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_x) +
-        ups_S_dot_z*(v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_x -
-        v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_y));
-    /* (ups-qd_1) */
-    o[0*count + k] = ups_qd_1;
-    /* (ups-qd_2) */
-    o[1*count + k] = ups_qd_2;
+    o[1*count + k] = v.ups_qd_2;
     /* (ups-qd_3) rate of joint 3 */
-    o[2*count + k] = ups_S_dot_in_axes2_x;
-    o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
+    o[2*count + k] = v.ups_S_dot_in_axes2_x;
+    o[4*count + k] = v.ups_qd_1 + (v.ups_qd_2 + v.ups_S_dot_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[3*i*w + k] = o[0*count + at];
     qd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -3401,9 +3174,10 @@ INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     values v;
     joint_rates_before(m, 1, 0, X, &v, s, t);
@@ -3416,9 +3190,9 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3435,10 +3209,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
+    real *V, const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3448,6 +3224,15 @@ INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, co
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -3456,42 +3241,24 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    stage_ups_A_X(w, j, A, &v);
-    stage_ups_V_X(w, j, V, &v);
-    stage_ups_A_V_X(w, j, V, &v);
-    /* (ups-omega_1) angular velocity of link 1 */
-    const real ups_omega_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z*v.ups_qd_1;
-    const real ups_omega_1_in_axes2_y = -v.inv_ups_q_3*v.ups_qd_1*v.ups_root_1;
-    /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-    const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*v.ups_q_3*v.ups_qd_2 -
-        v.ups_bias_t*ups_omega_1_in_axes2_y;
+    stage_ups_V_X(m, w, i, j, V, &v);
+    stage_ups_A_V_X(w, j, s, A, &v);
     /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-    const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*v.ups_S_ddot_x +
-        v.axis_x_ups_axes2_y*v.ups_S_ddot_y + v.axis_x_ups_axes2_z*v.ups_S_ddot_z -
-        v.ups_q_3*(-v.ups_qd_2*v.ups_qd_2 - ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y);
-    const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*v.ups_S_ddot_x +
-        v.axis_z_ups_axes2_y*v.ups_S_ddot_y + v.axis_z_ups_axes2_z*v.ups_S_ddot_z -
-        ups_bias_in_axes2_z;
+    const real ups_rel_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_W_2_in_axes2_xx*v.ups_q_3;
     /* (ups-qdd_1) acceleration of joint 1 */
-    const real ups_qdd_1 = v.inv_ups_root_1*ups_rel_in_axes2_z;
+    o[0*count + k] = v.ups_qdd_1;
     /* (ups-qdd_2) acceleration of joint 2 */
-    const real ups_qdd_2 = v.inv_ups_q_3*(v.axis_y_ups_axes2_x*v.ups_S_ddot_x +
-        v.axis_y_ups_axes2_y*v.ups_S_ddot_y + v.axis_y_ups_axes2_z*v.ups_S_ddot_z -
-        v.ups_bias_t*v.ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-    /* (ups-qdd_1) */
-    o[0*count + k] = ups_qdd_1;
-    /* (ups-qdd_2) */
-    o[1*count + k] = ups_qdd_2;
+    o[1*count + k] = v.ups_qdd_2;
     /* (ups-qdd_3) acceleration of joint 3 */
     o[2*count + k] = ups_rel_in_axes2_x;
-    o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
+    o[4*count + k] = v.ups_qdd_1 + (v.ups_qdd_2 + ups_rel_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[3*i*w + k] = o[0*count + at];
     qdd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -3501,12 +3268,12 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s, t);
+    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
@@ -3516,13 +3283,13 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s, t);
+        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3535,10 +3302,12 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
+    real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3548,6 +3317,15 @@ INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, va
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -3556,59 +3334,20 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    stage_ups_A_X(w, j, A, &v);
-    stage_ups_V_X(w, j, V, &v);
-    stage_ups_A_V_X(w, j, V, &v);
+    stage_ups_V_X(m, w, i, j, V, &v);
+    stage_ups_A_V_X(w, j, s, A, &v);
     stage_ups_legs_required(m, i, &v);
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
-    const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        m->ups_J_group_2_in_axes2_yz[i]*(ups_mu_2_t_2 - ups_mu_2_t_3) +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
-    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
-        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
-    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-       point */
-    const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3) -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
-    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
-        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
+    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real ups_acc_3_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_g_in_axes2_x;
+    const real ups_acc_3_in_axes2_y = v.ups_S_ddot_in_axes2_y - v.ups_g_in_axes2_y;
+    const real ups_acc_3_in_axes2_z = v.ups_S_ddot_in_axes2_z - v.ups_g_in_axes2_z;
     /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
-    const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] - m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2
-        - ups_mu_2_t_3) - v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
-    const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
-        v.ups_acc_3_in_axes2_y*m->ups_link3_mass[i];
-    const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
-        v.ups_acc_3_in_axes2_z*m->ups_link3_mass[i];
+    const real ups_c_true_in_axes2_x = -ups_acc_3_in_axes2_x*m->ups_link3_mass[i] -
+        v.ups_phi_3_in_axes2_x;
+    const real ups_c_true_in_axes2_y = v.ups_c_in_axes2_y -
+        ups_acc_3_in_axes2_y*m->ups_link3_mass[i];
+    const real ups_c_true_in_axes2_z = v.ups_c_in_axes2_z -
+        ups_acc_3_in_axes2_z*m->ups_link3_mass[i];
     const real ups_c_true_x = v.axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
         v.axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
         v.axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
@@ -3632,7 +3371,7 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[3*i*w + k] = o[0*count + at];
     leg_force[(3*i + 1)*w + k] = o[1*count + at];
@@ -3644,12 +3383,12 @@ INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
     values v;
-    legs_before(m, 1, 0, X, &v, s, t);
+    legs_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         legs_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
@@ -3660,7 +3399,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 
 /* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3682,48 +3421,35 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
-        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
-        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
-        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
-        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
-        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
-    s[9*w + k] = potential_t;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
+        m->gravity_y*(m->m_star*t_y + v->h_star_y) + m->gravity_z*(m->m_star*t_z +
+        v->h_star_z);
+    s[18*w + k] = potential_t;
 }
 
 INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
     values_ups v;
-    stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real ups_c_1 = v.inv_ups_root_1*v.ups_S_in_turn1_x;
-    /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-    const real ups_s_1 = v.inv_ups_root_1*v.ups_S_in_turn1_y;
-    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real ups_c_2 = v.inv_ups_q_3*v.ups_root_1;
+    stage_ups_X(m, w, i, j, s, X, &v);
     /* (potential) */
-    const real ups_e_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z;
-    const real ups_potential_t_4 = m->ups_acc_3_t[i]*ups_c_1 + m->ups_acc_3_t_2[i]*ups_s_1;
-    const real ups_potential_t_5 = ups_c_1*m->ups_potential_t[i] +
-        m->ups_potential_t_2[i]*ups_s_1;
-    const real ups_potential_t_6 = (ups_e_1_in_axes2_x*ups_potential_t_4 -
-        m->ups_acc_3_t_3[i]*ups_c_2)*(m->ups_h_2_in_spec2_z[i] + m->ups_h_3_in_spec2_z[i] -
-        m->ups_link2_mass[i]*(ups_e_1_in_axes2_x*ups_potential_t_5 -
-        ups_c_2*m->ups_potential_t_3[i])) - (m->ups_acc_3_t_2[i]*ups_c_1 -
-        m->ups_acc_3_t[i]*ups_s_1)*(m->ups_h_2_in_spec2_y[i] + m->ups_h_3_in_spec2_y[i] +
-        m->ups_link2_mass[i]*(ups_c_1*m->ups_potential_t_2[i] -
-        m->ups_potential_t[i]*ups_s_1)) - (m->ups_acc_3_t_3[i]*ups_e_1_in_axes2_x +
-        ups_c_2*ups_potential_t_4)*(m->ups_h_2_in_spec2_x[i] + m->ups_h_3_in_spec2_x[i] +
-        m->ups_link2_mass[i]*(ups_c_2*ups_potential_t_5 +
-        ups_e_1_in_axes2_x*m->ups_potential_t_3[i]));
+    const real ups_potential_t_4 = v.ups_c_1*m->ups_potential_t[i] +
+        m->ups_potential_t_2[i]*v.ups_s_1;
+    const real ups_potential_t_5 = v.ups_g_in_axes2_y*(m->ups_h_2_in_spec2_z[i] +
+        m->ups_h_3_in_spec2_z[i] -
+        m->ups_link2_mass[i]*(v.ups_e_1_in_axes2_x*ups_potential_t_4 -
+        v.ups_c_2*m->ups_potential_t_3[i])) - v.ups_g_in_axes2_z*(m->ups_h_2_in_spec2_y[i] +
+        m->ups_h_3_in_spec2_y[i] + m->ups_link2_mass[i]*(v.ups_c_1*m->ups_potential_t_2[i] -
+        m->ups_potential_t[i]*v.ups_s_1)) - v.ups_g_in_axes2_x*(m->ups_h_2_in_spec2_x[i] +
+        m->ups_h_3_in_spec2_x[i] + m->ups_link2_mass[i]*(v.ups_c_2*ups_potential_t_4 +
+        v.ups_e_1_in_axes2_x*m->ups_potential_t_3[i]));
     /* (potential) */
-    gather(&terms[0*count + k], add, ups_potential_t_6);  /* potential_of_legs */
+    gather(&terms[0*count + k], add, ups_potential_t_5);  /* potential_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
 }
 
-INLINE void potential_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -3732,15 +3458,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 {
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
-    const real potential_t = s[9*w + k];
+    const real potential_t = s[18*w + k];
     const real potential_ = potential_of_legs - potential_t;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[10] = {0}, sums[1] = {0};
+    real s[19] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     values v;
     potential_before(m, 1, 0, X, &v, s, t);
@@ -3759,7 +3485,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3790,10 +3516,6 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
     const real ups_pivot_size_4 = magnitude(v.ups_q_3);
     const real ups_least_pivots = lesser(lesser(lesser(R(1.25)*root(ups_pivot_size),
         R(1.25)*root(ups_pivot_size_2)), R(1.25)*ups_pivot_size_3), R(1.25)*ups_pivot_size_4);
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-    const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
-    const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
-    const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
     /* (spread) rms distance of the platform points from their centroid */
     const real ups_spread_t = m->b_c_in_platform_x - m->ups_platform_point_x[i];
     const real ups_spread_t_2 = m->b_c_in_platform_y - m->ups_platform_point_y[i];
@@ -3803,24 +3525,24 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
     /* (spread) */
     gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
     /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.ups_w_3_x;
-    o[1*count + k] = v.ups_w_3_y;
-    o[2*count + k] = v.ups_w_3_z;
-    /* (ups-H_a_3) */
-    o[3*count + k] = ups_H_a_3_x;
-    o[4*count + k] = ups_H_a_3_y;
-    o[5*count + k] = ups_H_a_3_z;
+    o[0*count + k] = v.axis_x_ups_axes2_x;
+    o[1*count + k] = v.axis_x_ups_axes2_y;
+    o[2*count + k] = v.axis_x_ups_axes2_z;
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.ups_H_a_3_x;
+    o[4*count + k] = v.ups_H_a_3_y;
+    o[5*count + k] = v.ups_H_a_3_z;
     /* (ups-G) */
     o[6*count + k] = ups_least_pivots;
-    o[8*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + ((ups_H_a_3_x +
-        ups_H_a_3_y) + (ups_H_a_3_z + ups_least_pivots));
+    o[8*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
+        ((v.ups_H_a_3_x + v.ups_H_a_3_y) + (v.ups_H_a_3_z + ups_least_pivots));
     o[7*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void condition_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *pivots, verdict *t)
+    *o, real *H, real *pivots, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -3834,7 +3556,7 @@ INLINE void condition_place_ups(size_t w, size_t i, size_t k, size_t at, size_t 
 }
 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
-    *lengths, verdict *t)
+    *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_ups = sums[0*w + k];
@@ -3845,9 +3567,9 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
-    real s[9] = {0}, sums[1] = {0};
+    real s[18] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] = {0};
     clear(reach, NL);
     values v;
@@ -3868,196 +3590,179 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int stewart_7ups_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int stewart_7ups_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int stewart_7ups_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int stewart_7ups_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int stewart_7ups_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int stewart_7ups_joint_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int stewart_7ups_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 static int inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
@@ -4067,14 +3772,9 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
     static const real no_weights[NU] = {1, 1, 1, 1, 1, 1, 1};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, inverse_root_1[NU] = {0},
         scale_columns_1[NV*NU] = {0}, least_norm_1[NU] = {0}, tau[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     require_positive(NU, 1, weights, why.invalid);
     weights = optional(NU, weights, no_weights, why.invalid);
@@ -4092,9 +3792,7 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
     for (size_t i = 0; i < NU; ++i) {
         tau[i] = inverse_root_1[i]*least_norm_1[i];
     }
-    check(NU, 1, tau, why.overflow);
-    copy(NU, tau, tau_out);
-    return settled(&why, NU, tau_out);
+    return finished(NU, tau, tau_out, &why);
 }
 
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -4276,14 +3974,9 @@ int stewart_7ups_forward_dynamics(const prepared *m, const real *X, const real *
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
         subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -4302,7 +3995,7 @@ int stewart_7ups_forward_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4311,7 +4004,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
         A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4326,8 +4019,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_6(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int stewart_7ups_complete_acceleration(const prepared *m, const real *X, const real *V, const real
@@ -4337,13 +4030,11 @@ int stewart_7ups_complete_acceleration(const prepared *m, const real *X, const r
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int stewart_7ups_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -4353,14 +4044,9 @@ int stewart_7ups_leg_reactions(const prepared *m, const real *X, const real *V, 
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5, 6};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] = {0},
         leg_force[3*NL] = {0}, actuator[21] = {0}, forces[3*NL] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -4372,22 +4058,16 @@ int stewart_7ups_leg_reactions(const prepared *m, const real *X, const real *V, 
         forces[i] = leg_force[i];
     }
     add_forces(NL, 3, 1, places_forces, least_norm_1, actuator, forces);
-    check(3*NL, 1, forces, why.overflow);
-    copy(3*NL, forces, forces_out);
-    return settled(&why, 3*NL, forces_out);
+    return finished(3*NL, forces, forces_out, &why);
 }
 
 int stewart_7ups_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -4396,21 +4076,19 @@ int stewart_7ups_energy(const prepared *m, const real *X, const real *V, real *k
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int stewart_7ups_null_space(const prepared *m, const real *X, real *basis_out)
 {
     real H[NV*NU] = {0}, basis[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H, &why);
     null_basis(NV, NU, NV, H, basis);
-    check(NU, 1, basis, why.overflow);
-    copy(NU, basis, basis_out);
-    return settled(&why, NU, basis_out);
+    return finished(NU, basis, basis_out, &why);
 }
 
 int stewart_7ups_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -4420,9 +4098,9 @@ int stewart_7ups_condition(const prepared *m, const real *X, real *sigma_out, re
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
         divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -4442,8 +4120,8 @@ int stewart_7ups_condition(const prepared *m, const real *X, real *sigma_out, re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int stewart_7ups_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4453,13 +4131,12 @@ int stewart_7ups_manipulability(const prepared *m, const real *X, real *measure_
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
         = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4477,8 +4154,8 @@ int stewart_7ups_manipulability(const prepared *m, const real *X, real *measure_
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int stewart_7ups_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -4488,13 +4165,12 @@ int stewart_7ups_singularity_distance(const prepared *m, const real *X, real *ac
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
         = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4512,8 +4188,8 @@ int stewart_7ups_singularity_distance(const prepared *m, const real *X, real *ac
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
 int stewart_7ups_force_distribution(const prepared *m, const real *X, const real *V, const real
@@ -4525,17 +4201,10 @@ int stewart_7ups_force_distribution(const prepared *m, const real *X, const real
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] = {0},
         null_basis_1[NU] = {0}, transposed_1[NU] = {0}, product_1[NU*NU] = {0}, times_1[NU] = {0},
         add_1[NU] = {0}, tau[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV) + total(tau_min, NU) +
-        total(tau_max, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-        check(NU, 1, tau_min, why.invalid);
-        check(NU, 1, tau_max, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
+    check_two(NU, tau_min, NU, tau_max, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     reference = optional(NU, reference, no_reference, why.invalid);
     required_run(m, X, V, A, required, H, &why);
@@ -4551,53 +4220,46 @@ int stewart_7ups_force_distribution(const prepared *m, const real *X, const real
         add_1[i] = least_norm_1[i] + times_1[i];
     }
     nearest_within(NU, add_1, product_1, tau_min, tau_max, tau, why.unreachable, why.overflow);
-    check(NU, 1, tau, why.overflow);
-    copy(NU, tau, tau_out);
-    return settled(&why, NU, tau_out);
+    return finished(NU, tau, tau_out, &why);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[7] = {0}, gap[NU] = {0};
-    verdict why;
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[7] = {0}, residual[NU] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(7, 1, stewart_7ups_ACTUATED, q, q_of_inverse_kinematics_from_2);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_2[i];
+        residual[i] = q_actuated[i] - q_of_inverse_kinematics_from_2[i];
     }
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -4609,21 +4271,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -4637,17 +4299,11 @@ int stewart_7ups_forward_kinematics(const prepared *m, const real *q_actuated, c
     real *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int stewart_7ups_dissipation(const prepared *m, const real *X, const real *V, real
@@ -4656,33 +4312,25 @@ int stewart_7ups_dissipation(const prepared *m, const real *X, const real *V, re
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int stewart_7ups_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int stewart_7ups_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -4690,256 +4338,177 @@ int stewart_7ups_joint_margins(const prepared *m, const real *X, real *margins_o
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17, 18, 19, 20};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int stewart_7ups_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int stewart_7ups_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, stewart_7ups_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int stewart_7ups_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, stewart_7ups_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int stewart_7ups_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, stewart_7ups_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int stewart_7ups_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int stewart_7ups_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
-    check(9, 1, R, why.overflow);
-    copy(9, R, R_out);
-    return settled(&why, 9, R_out);
+    return finished(9, R, R_out, &why);
 }
 
 int stewart_7ups_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(R, 9);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(9, 1, R, why.invalid);
-    }
+    check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int stewart_7ups_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const V_from_3 = V + 3;
     const real *const X_from_3 = X + 3;
     quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
-    const real *const V_from_0 = V;
-    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    beside(1, 3, 4, V, quaternion_rate_1, X_dot);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int stewart_7ups_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(rpy, 3);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(3, 1, rpy, why.invalid);
-    }
+    check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int stewart_7ups_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
-    const real *const X_from_0 = X;
+    check_two(NQ, X, NV, step, why.invalid);
     const real *const X_from_3 = X + 3;
-    const real *const step_from_0 = step;
     const real *const step_from_3 = step + 3;
     turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X_from_0[i] + step_from_0[i];
+        add_1[i] = X[i] + step[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int stewart_7ups_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
+    check_two(NQ, X0, NQ, X1, why.invalid);
     const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
     const real *const X1_from_3 = X1 + 3;
     turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
+        subtract_1[i] = X1[i] - X0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int stewart_7ups_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
-        turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
-    verdict why;
+    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
-    const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
-    const real *const X1_from_3 = X1 + 3;
-    turn_between(X0_from_3, X1_from_3, turn_between_1);
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
-    }
-    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(stewart_7ups_difference(X0, X1, join_1), &why);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const X0_from_0_2 = X0;
     const real *const X0_from_3_2 = X0 + 3;
-    const real *const scale_1_from_0 = scale_1;
     const real *const scale_1_from_3 = scale_1 + 3;
     turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
+        add_1[i] = X0[i] + scale_1[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

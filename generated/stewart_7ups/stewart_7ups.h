@@ -109,9 +109,10 @@ typedef struct {
             ups_base_frame_zz[8], ups_base_point_x[8], ups_base_point_y[8], ups_base_point_z[8],
             ups_branch_1[8], ups_branch_2[8], ups_h_2_in_spec2_x[8], ups_h_2_in_spec2_y[8],
             ups_h_2_in_spec2_z[8], ups_h_3_in_spec2_x[8], ups_h_3_in_spec2_y[8],
-            ups_h_3_in_spec2_z[8], ups_link2_mass[8], ups_link3_mass[8], ups_platform_point_x[8],
-            ups_platform_point_y[8], ups_platform_point_z[8], ups_potential_t[8],
-            ups_potential_t_2[8], ups_potential_t_3[8];
+            ups_h_3_in_spec2_z[8], ups_h_group_2_in_axes2_x[8], ups_h_group_2_in_axes2_y[8],
+            ups_h_group_2_in_axes2_z[8], ups_link2_mass[8], ups_link3_mass[8],
+            ups_platform_point_x[8], ups_platform_point_y[8], ups_platform_point_z[8],
+            ups_potential_t[8], ups_potential_t_2[8], ups_potential_t_3[8];
     stewart_7ups_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
             J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
@@ -139,7 +140,7 @@ int stewart_7ups_M(const stewart_7ups_model *model, const stewart_7ups_real *X, 
 size_t stewart_7ups_M_batch(const stewart_7ups_model *model, size_t n, const stewart_7ups_real *X,
     stewart_7ups_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1154 mul, 880 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1163 mul, 865 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_7ups_Z(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, stewart_7ups_real *Z);
@@ -167,7 +168,7 @@ int stewart_7ups_joint_rates(const stewart_7ups_model *model, const stewart_7ups
 size_t stewart_7ups_joint_rates_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *rates, int *status);
 
-/* Accelerations of all joints. 658 mul, 434 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 643 mul, 422 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int stewart_7ups_joint_accelerations(const stewart_7ups_model *model, const stewart_7ups_real *X,
     const stewart_7ups_real *V, const stewart_7ups_real *A, stewart_7ups_real *accelerations);
@@ -175,7 +176,7 @@ size_t stewart_7ups_joint_accelerations_batch(const stewart_7ups_model *model, s
     stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A,
     stewart_7ups_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1813 mul, 1416 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1786 mul, 1377 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_7ups_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, stewart_7ups_real *M, stewart_7ups_real *Z, stewart_7ups_real *H);
@@ -183,7 +184,7 @@ size_t stewart_7ups_dynamics_batch(const stewart_7ups_model *model, size_t n, co
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *M, stewart_7ups_real *Z,
     stewart_7ups_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1262 mul, 991
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1234 mul, 956
    add, 14 div, 14 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A
    (NV), wrench (NW, or NULL). Out: tau (NU). */
 int stewart_7ups_inverse_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X,
@@ -194,7 +195,7 @@ size_t stewart_7ups_inverse_dynamics_batch(const stewart_7ups_model *model, size
     stewart_7ups_real *wrench, stewart_7ups_real *tau, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least sum of weights tau^2.
-   1262 mul, 991 add, 14 div, 14 sqrt, 0 trig; the solution of the linear equations apart. In: X
+   1234 mul, 956 add, 14 div, 14 sqrt, 0 trig; the solution of the linear equations apart. In: X
    (NQ), V (NV), A (NV), wrench (NW, or NULL), weights (NU, positive). Out: tau (NU). */
 int stewart_7ups_inverse_dynamics_weighted(const stewart_7ups_model *model, const
     stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A, const
@@ -204,7 +205,7 @@ size_t stewart_7ups_inverse_dynamics_weighted_batch(const stewart_7ups_model *mo
     stewart_7ups_real *wrench, const stewart_7ups_real *weights, stewart_7ups_real *tau, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1813 mul, 1416 add, 14 div, 14
+/* Acceleration A under the actuator forces tau and the wrench. 1786 mul, 1377 add, 14 div, 14
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_7ups_forward_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X,
@@ -225,7 +226,7 @@ size_t stewart_7ups_complete_acceleration_batch(const stewart_7ups_model *model,
     stewart_7ups_real *wrench, stewart_7ups_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 1106 mul, 847 add, 14 div, 14 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 1084 mul, 842 add, 14 div, 14 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (7 x 3). */
 int stewart_7ups_leg_reactions(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, const stewart_7ups_real *A, const stewart_7ups_real *wrench,
@@ -277,7 +278,7 @@ size_t stewart_7ups_singularity_distance_batch(const stewart_7ups_model *model, 
 /* Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference. By
    the dual active-set method of Goldfarb and Idnani; continuous along a motion. Impossible
    (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull with
-   negative forces: tau_max = -t keeps tensions of t at least. 1262 mul, 991 add, 14 div, 14 sqrt,
+   negative forces: tau_max = -t keeps tensions of t at least. 1234 mul, 956 add, 14 div, 14 sqrt,
    0 trig; the search apart. In: X (NQ), V (NV), A (NV), tau_min (NU), tau_max (NU), wrench (NW,
    or NULL), reference (NU, or NULL). Out: tau (NU). */
 int stewart_7ups_force_distribution(const stewart_7ups_model *model, const stewart_7ups_real *X,
@@ -340,7 +341,7 @@ int stewart_7ups_actuator_rates(const stewart_7ups_model *model, const stewart_7
 size_t stewart_7ups_actuator_rates_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 658 mul, 434 add, 14 div, 14 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 643 mul, 422 add, 14 div, 14 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int stewart_7ups_actuator_accelerations(const stewart_7ups_model *model, const stewart_7ups_real
     *X, const stewart_7ups_real *V, const stewart_7ups_real *A, stewart_7ups_real *accelerations);

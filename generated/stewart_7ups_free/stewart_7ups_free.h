@@ -126,9 +126,10 @@ typedef struct {
             ups_base_frame_zz[8], ups_base_point_x[8], ups_base_point_y[8], ups_base_point_z[8],
             ups_branch_1[8], ups_branch_2[8], ups_h_2_in_spec2_x[8], ups_h_2_in_spec2_y[8],
             ups_h_2_in_spec2_z[8], ups_h_3_in_spec2_x[8], ups_h_3_in_spec2_y[8],
-            ups_h_3_in_spec2_z[8], ups_link2_mass[8], ups_link3_mass[8], ups_platform_point_x[8],
-            ups_platform_point_y[8], ups_platform_point_z[8], ups_potential_t[8],
-            ups_potential_t_2[8], ups_potential_t_3[8];
+            ups_h_3_in_spec2_z[8], ups_h_group_2_in_axes2_x[8], ups_h_group_2_in_axes2_y[8],
+            ups_h_group_2_in_axes2_z[8], ups_link2_mass[8], ups_link3_mass[8],
+            ups_platform_point_x[8], ups_platform_point_y[8], ups_platform_point_z[8],
+            ups_potential_t[8], ups_potential_t_2[8], ups_potential_t_3[8];
     /* 1 legs of type ups_leg7 */
     stewart_7ups_free_real ups_leg7_J_group_2_in_axes2_xx[1], ups_leg7_J_group_2_in_axes2_xy[1],
             ups_leg7_J_group_2_in_axes2_xz[1], ups_leg7_J_group_2_in_axes2_yy[1],
@@ -142,9 +143,10 @@ typedef struct {
             ups_leg7_base_point_z[1], ups_leg7_branch_1[1], ups_leg7_branch_2[1],
             ups_leg7_h_2_in_spec2_x[1], ups_leg7_h_2_in_spec2_y[1], ups_leg7_h_2_in_spec2_z[1],
             ups_leg7_h_3_in_spec2_x[1], ups_leg7_h_3_in_spec2_y[1], ups_leg7_h_3_in_spec2_z[1],
-            ups_leg7_link2_mass[1], ups_leg7_link3_mass[1], ups_leg7_platform_point_x[1],
-            ups_leg7_platform_point_y[1], ups_leg7_platform_point_z[1], ups_leg7_potential_t[1],
-            ups_leg7_potential_t_2[1], ups_leg7_potential_t_3[1];
+            ups_leg7_h_group_2_in_axes2_x[1], ups_leg7_h_group_2_in_axes2_y[1],
+            ups_leg7_h_group_2_in_axes2_z[1], ups_leg7_link2_mass[1], ups_leg7_link3_mass[1],
+            ups_leg7_platform_point_x[1], ups_leg7_platform_point_y[1], ups_leg7_platform_point_z[1],
+            ups_leg7_potential_t[1], ups_leg7_potential_t_2[1], ups_leg7_potential_t_3[1];
     stewart_7ups_free_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
             J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
@@ -172,7 +174,7 @@ int stewart_7ups_free_M(const stewart_7ups_free_model *model, const stewart_7ups
 size_t stewart_7ups_free_M_batch(const stewart_7ups_free_model *model, size_t n, const
     stewart_7ups_free_real *X, stewart_7ups_free_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1154 mul, 886 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1163 mul, 871 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_7ups_free_Z(const stewart_7ups_free_model *model, const stewart_7ups_free_real *X,
     const stewart_7ups_free_real *V, stewart_7ups_free_real *Z);
@@ -202,7 +204,7 @@ size_t stewart_7ups_free_joint_rates_batch(const stewart_7ups_free_model *model,
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *rates, int
     *status);
 
-/* Accelerations of all joints. 658 mul, 434 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 643 mul, 422 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int stewart_7ups_free_joint_accelerations(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real *A,
@@ -211,7 +213,7 @@ size_t stewart_7ups_free_joint_accelerations_batch(const stewart_7ups_free_model
     const stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real
     *A, stewart_7ups_free_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1807 mul, 1440 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1780 mul, 1401 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_7ups_free_dynamics(const stewart_7ups_free_model *model, const stewart_7ups_free_real
     *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *M, stewart_7ups_free_real *Z,
@@ -220,7 +222,7 @@ size_t stewart_7ups_free_dynamics_batch(const stewart_7ups_free_model *model, si
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *M,
     stewart_7ups_free_real *Z, stewart_7ups_free_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1256 mul, 994 add, 14 div, 14 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1228 mul, 959 add, 14 div, 14 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int stewart_7ups_free_inverse_dynamics(const stewart_7ups_free_model *model, const
@@ -230,7 +232,7 @@ size_t stewart_7ups_free_inverse_dynamics_batch(const stewart_7ups_free_model *m
     const stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real
     *A, const stewart_7ups_free_real *wrench, stewart_7ups_free_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1807 mul, 1440 add, 14 div, 14
+/* Acceleration A under the actuator forces tau and the wrench. 1780 mul, 1401 add, 14 div, 14
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_7ups_free_forward_dynamics(const stewart_7ups_free_model *model, const
@@ -252,7 +254,7 @@ size_t stewart_7ups_free_complete_acceleration_batch(const stewart_7ups_free_mod
     *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 1106 mul, 847 add, 14 div, 14 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 1084 mul, 842 add, 14 div, 14 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (7 x 3). */
 int stewart_7ups_free_leg_reactions(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real *A,
@@ -356,7 +358,7 @@ size_t stewart_7ups_free_actuator_rates_batch(const stewart_7ups_free_model *mod
     const stewart_7ups_free_real *X, const stewart_7ups_free_real *V, stewart_7ups_free_real
     *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 658 mul, 434 add, 14 div, 14 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 643 mul, 422 add, 14 div, 14 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int stewart_7ups_free_actuator_accelerations(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real *A,

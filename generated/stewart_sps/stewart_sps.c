@@ -147,9 +147,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -211,6 +211,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -259,7 +283,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -269,7 +293,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -282,7 +306,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -299,16 +323,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -316,7 +340,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -684,6 +717,10 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         const real sps_Sigma_3_in_axes3_xx = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_xx;
         const real sps_Sigma_3_in_axes3_yy = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_yy;
         const real sps_Sigma_3_in_axes3_zz = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_zz;
+        /* (sps-h_group_3) first moments of the links that turn with link 3 */
+        const real sps_h_group_3_in_axes3_x = sps_h_3_in_spec3_y + sps_h_4_in_spec3_y;
+        const real sps_h_group_3_in_axes3_y = sps_h_3_in_spec3_z + sps_h_4_in_spec3_z;
+        const real sps_h_group_3_in_axes3_z = sps_h_3_in_spec3_x + sps_h_4_in_spec3_x;
         /* (h_star) */
         const real sps_h_star_t = sps_link4_mass*sps_platform_point_x;
         const real sps_h_star_t_2 = sps_link4_mass*sps_platform_point_y;
@@ -741,6 +778,9 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         KEEP_OF_LEG(sps_h_4_in_spec3_x);
         KEEP_OF_LEG(sps_h_4_in_spec3_y);
         KEEP_OF_LEG(sps_h_4_in_spec3_z);
+        KEEP_OF_LEG(sps_h_group_3_in_axes3_x);
+        KEEP_OF_LEG(sps_h_group_3_in_axes3_y);
+        KEEP_OF_LEG(sps_h_group_3_in_axes3_z);
         KEEP_OF_LEG(sps_link3_mass);
         KEEP_OF_LEG(sps_link4_mass);
         KEEP_OF_LEG(sps_platform_point_x);
@@ -1483,10 +1523,28 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
-        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
-        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+    real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
+        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
+
+INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
+{
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real W_p_t = omega_x*omega_x;
+    const real omega_y = V[4*w + k];
+    const real W_p_t_2 = omega_y*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_t_3 = omega_z*omega_z;
+    v->W_p_t_4 = W_p_t_2 + W_p_t_3;
+    v->W_p_xy = omega_x*omega_y;
+    v->W_p_xz = omega_x*omega_z;
+    v->W_p_t_5 = W_p_t + W_p_t_3;
+    v->W_p_yz = omega_y*omega_z;
+    v->W_p_t_6 = W_p_t + W_p_t_2;
+}
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
@@ -1496,10 +1554,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_5 = X[5*w + k];
     const real X_6 = X[6*w + k];
     const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-    const real quaternion_scale = 2/quaternion_norm2;
-    const real quaternion_sx = X_3*quaternion_scale;
-    const real quaternion_sy = X_4*quaternion_scale;
-    const real quaternion_sz = X_5*quaternion_scale;
+    v->quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*v->quaternion_scale;
+    const real quaternion_sy = X_4*v->quaternion_scale;
+    const real quaternion_sz = X_5*v->quaternion_scale;
     const real quaternion_wx = X_6*quaternion_sx;
     const real quaternion_wy = X_6*quaternion_sy;
     const real quaternion_wz = X_6*quaternion_sz;
@@ -1509,53 +1567,22 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real quaternion_yy = X_4*quaternion_sy;
     const real quaternion_yz = X_4*quaternion_sz;
     const real quaternion_zz = X_5*quaternion_sz;
-    const real R_xx = 1 - quaternion_yy - quaternion_zz;
-    const real R_xy = quaternion_xy - quaternion_wz;
-    const real R_xz = quaternion_wy + quaternion_xz;
-    const real R_yx = quaternion_wz + quaternion_xy;
-    const real R_yy = 1 - quaternion_xx - quaternion_zz;
-    const real R_yz = quaternion_yz - quaternion_wx;
-    const real R_zx = quaternion_xz - quaternion_wy;
-    const real R_zy = quaternion_wx + quaternion_yz;
-    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    v->R_xx = 1 - quaternion_yy - quaternion_zz;
+    v->R_xy = quaternion_xy - quaternion_wz;
+    v->R_xz = quaternion_wy + quaternion_xz;
+    v->R_yx = quaternion_wz + quaternion_xy;
+    v->R_yy = 1 - quaternion_xx - quaternion_zz;
+    v->R_yz = quaternion_yz - quaternion_wx;
+    v->R_zx = quaternion_xz - quaternion_wy;
+    v->R_zy = quaternion_wx + quaternion_yz;
+    v->R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
-        R_xx*m->h_star_in_platform_x;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
-        R_yy*m->h_star_in_platform_y;
-    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
-        R_zz*m->h_star_in_platform_z;
-    v->quaternion_scale = quaternion_scale;
-    v->R_xx = R_xx;
-    v->R_xy = R_xy;
-    v->R_xz = R_xz;
-    v->R_yx = R_yx;
-    v->R_yy = R_yy;
-    v->R_yz = R_yz;
-    v->R_zx = R_zx;
-    v->R_zy = R_zy;
-    v->R_zz = R_zz;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
-    v->h_star_z = h_star_z;
-}
-
-INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
-{
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
-    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
-    v->omega_in_platform_x = omega_in_platform_x;
-    v->omega_in_platform_y = omega_in_platform_y;
-    v->omega_in_platform_z = omega_in_platform_z;
-}
-
-INLINE void stage_M_dynamics(const prepared *m, values *v)
-{
+    v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
+        v->R_xx*m->h_star_in_platform_x;
+    v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
+        v->R_yy*m->h_star_in_platform_y;
+    v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
+        v->R_zz*m->h_star_in_platform_z;
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
@@ -1567,23 +1594,31 @@ INLINE void stage_M_dynamics(const prepared *m, values *v)
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
-    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+    v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
-    v->J_star_xx = J_star_xx;
-    v->J_star_xy = J_star_xy;
-    v->J_star_xz = J_star_xz;
-    v->J_star_yy = J_star_yy;
-    v->J_star_yz = J_star_yz;
-    v->J_star_zz = J_star_zz;
+    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
+}
+
+INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
+{
+    /* (B_p) acceleration tensor of the platform */
+    const real alpha_z = A[5*w + k];
+    v->B_p_xy = v->W_p_xy - alpha_z;
+    const real alpha_y = A[4*w + k];
+    v->B_p_xz = alpha_y + v->W_p_xz;
+    v->B_p_yx = alpha_z + v->W_p_xy;
+    const real alpha_x = A[3*w + k];
+    v->B_p_yz = v->W_p_yz - alpha_x;
+    v->B_p_zx = v->W_p_xz - alpha_y;
+    v->B_p_zy = alpha_x + v->W_p_yz;
 }
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
@@ -1595,67 +1630,40 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
+    v->Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    v->Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    v->Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
-        v->R_xx*m->gravity_x;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
-        v->R_yy*m->gravity_y;
-    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
-        v->R_zz*m->gravity_z;
-    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
-        Z_q_t_2*v->omega_in_platform_z;
-    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
-        Z_q_t_3*v->omega_in_platform_x;
-    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
-        Z_q_t*v->omega_in_platform_y;
-    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
-        v->R_xz*Z_q_in_platform_z;
-    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
-        v->R_yz*Z_q_in_platform_z;
-    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
-        v->R_zz*Z_q_in_platform_z;
-    v->Z_p_x = Z_p_x;
-    v->Z_p_y = Z_p_y;
-    v->Z_p_z = Z_p_z;
-    v->Z_q_x = Z_q_x;
-    v->Z_q_y = Z_q_y;
-    v->Z_q_z = Z_q_z;
+    const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
+    const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
+    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
+        Z_q_t_2*omega_z;
+    v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
+        Z_q_t_3*omega_x;
+    v->Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x + Z_q_t_2*omega_x -
+        Z_q_t*omega_y;
 }
 
 typedef struct {
-    real sps_q_x, sps_q_y, sps_q_z, sps_S_in_turn1_z, sps_c_3, sps_s_3, sps_root_1_t, sps_c_1,
-        sps_s_1, sps_root_2_t, sps_root_2, inv_sps_root_2, sps_c_2, sps_e_1_in_axes3_x,
-        sps_e_1_in_axes3_y, sps_v_1_in_axes3_x, sps_v_1_in_axes3_y, sps_v_2_in_axes3_x, sps_v_2_t,
-        sps_w_1_t, inv_sps_w_1_t, sps_w_4_x, sps_w_4_y, sps_w_4_z, sps_e_1_in_axes2_y,
-        axis_y_sps_axes3_x, axis_y_sps_axes3_y, axis_y_sps_axes3_z, axis_x_sps_axes3_x,
-        axis_x_sps_axes3_y, axis_x_sps_axes3_z, sps_g_in_axes3_x, sps_g_in_axes3_y, sps_g_in_axes3_z,
-        sps_H_a_4_x, sps_H_a_4_y, sps_H_a_4_z, sps_a_p_x, sps_a_p_y, sps_a_p_z, sps_S_dot_t,
-        sps_S_dot_t_2, sps_S_dot_t_3, sps_S_dot_rest_in_axes3_x, sps_S_dot_rest_in_axes3_y,
-        sps_qd_2_t, sps_omega_1_in_axes2_x, sps_omega_2_in_axes3_x, sps_omega_2_in_axes3_y,
-        sps_omega_3_in_axes3_z, sps_W_3_in_axes3_xy, sps_W_3_in_axes3_xz, sps_W_3_in_axes3_yz,
-        sps_zeta_2_t, sps_zeta_3_in_axes3_x, sps_zeta_3_in_axes3_y, sps_bias_t, sps_bias_in_axes3_x,
-        sps_bias_in_axes3_y, sps_S_ddot_x, sps_S_ddot_y, sps_S_ddot_z, sps_d_mu_3_in_axes3_zx,
-        sps_d_mu_3_in_axes3_zy, sps_d_G_in_axes3_xz, sps_d_G_in_axes3_yz, sps_d_c_in_axes3_xx,
-        sps_d_c_in_axes3_xy, sps_d_c_in_axes3_yy, sps_mu_3_o_in_axes3_z, sps_U_x, sps_U_y, sps_U_z,
-        sps_Z_a_t, sps_Z_a_t_2, sps_Z_a_t_3, sps_S_in_turn1_x, sps_S_in_turn1_y, sps_root_1,
-        inv_sps_root_1, sps_B_3_in_axes3_xy, sps_B_3_in_axes3_xz, sps_B_3_in_axes3_yx,
-        sps_B_3_in_axes3_yz, sps_B_3_in_axes3_zx, sps_B_3_in_axes3_zy, sps_acc_4_in_axes3_x,
-        sps_acc_4_in_axes3_y, sps_acc_4_in_axes3_z;
+    real sps_q_x, sps_q_y, sps_q_z, sps_c_3, sps_s_3, sps_root_1_t, sps_c_1, sps_s_1, sps_root_2_t,
+        sps_root_2, sps_c_2, sps_e_1_in_axes2_y, sps_e_1_in_axes3_x, sps_e_1_in_axes3_y,
+        sps_v_1_in_axes3_x, sps_v_1_in_axes3_y, sps_v_2_in_axes3_x, sps_v_2_t, sps_w_1_t,
+        inv_sps_w_1_t, sps_w_4_x, sps_w_4_y, sps_w_4_z, axis_y_sps_axes3_x, axis_y_sps_axes3_y,
+        axis_y_sps_axes3_z, axis_x_sps_axes3_x, axis_x_sps_axes3_y, axis_x_sps_axes3_z,
+        sps_g_in_axes3_x, sps_g_in_axes3_y, sps_g_in_axes3_z, sps_mu_3_t_5, sps_mu_3_t_6,
+        sps_mu_3_t_7, sps_H_a_4_x, sps_H_a_4_y, sps_H_a_4_z, sps_S_dot_t, sps_S_dot_t_2,
+        sps_S_dot_t_3, sps_S_dot_rest_in_axes3_z, sps_qd_1, sps_qd_2_t, sps_W_3_in_axes3_xy,
+        sps_W_3_in_axes3_xz, sps_W_3_in_axes3_yz, sps_W_3_t_3, sps_zeta_2_t, sps_zeta_2_in_axes2_y,
+        sps_zeta_3_in_axes3_x, sps_zeta_3_in_axes3_y, sps_bias_in_axes3_x, sps_bias_in_axes3_y,
+        sps_phi_4_t, sps_mu_3_t_2, sps_mu_3_t_3, sps_mu_3_t_4, sps_c_t, sps_c_t_2,
+        sps_S_ddot_in_axes3_x, sps_S_ddot_in_axes3_y, sps_S_ddot_in_axes3_z, sps_qdd_1, sps_qdd_2_t,
+        sps_Q_xx, sps_Q_xy, sps_Q_xz, sps_Q_yy, sps_Q_yz, sps_Q_zz, sps_d_P_3_x, sps_d_P_3_y,
+        sps_d_P_3_z, sps_M_ta_t_3, sps_M_ta_t_4, sps_M_ta_t_5, sps_M_ta_t_6, sps_M_ta_t_8,
+        sps_M_ta_t_9, sps_M_ta_t_10, sps_M_ta_t_11, sps_M_ta_t_12, sps_M_aa_t, sps_M_aa_t_2,
+        sps_M_aa_t_3, sps_M_aa_t_4, sps_M_aa_t_5, sps_M_aa_t_6, sps_M_ya_3_x, sps_M_ya_3_y,
+        sps_M_ya_3_z, sps_mu_3_o_in_axes3_z, sps_U_x, sps_U_y, sps_U_z, sps_Z_a_t, sps_Z_a_t_2,
+        sps_Z_a_t_3, sps_phi_4_in_axes3_z, sps_mu_3_in_axes3_z, sps_c_in_axes3_x, sps_c_in_axes3_y;
 } values_sps;
 
 INLINE void stage_sps_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1666,24 +1674,24 @@ INLINE void stage_sps_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real sps_q_x = R_xy*m->sps_platform_point_y[i] + R_xz*m->sps_platform_point_z[i] +
+    v->sps_q_x = R_xy*m->sps_platform_point_y[i] + R_xz*m->sps_platform_point_z[i] +
         R_xx*m->sps_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real sps_q_y = R_yx*m->sps_platform_point_x[i] + R_yz*m->sps_platform_point_z[i] +
+    v->sps_q_y = R_yx*m->sps_platform_point_x[i] + R_yz*m->sps_platform_point_z[i] +
         R_yy*m->sps_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real sps_q_z = R_zx*m->sps_platform_point_x[i] + R_zy*m->sps_platform_point_y[i] +
+    v->sps_q_z = R_zx*m->sps_platform_point_x[i] + R_zy*m->sps_platform_point_y[i] +
         R_zz*m->sps_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real sps_S_x = t_x - m->sps_base_point_x[i] + sps_q_x;
+    const real sps_S_x = t_x - m->sps_base_point_x[i] + v->sps_q_x;
     const real t_y = X[1*w + j];
-    const real sps_S_y = t_y - m->sps_base_point_y[i] + sps_q_y;
+    const real sps_S_y = t_y - m->sps_base_point_y[i] + v->sps_q_y;
     const real t_z = X[2*w + j];
-    const real sps_S_z = t_z - m->sps_base_point_z[i] + sps_q_z;
+    const real sps_S_z = t_z - m->sps_base_point_z[i] + v->sps_q_z;
     const real sps_S_in_turn1_x = sps_S_x*m->sps_base_frame_xx[i] +
         sps_S_y*m->sps_base_frame_yx[i] + sps_S_z*m->sps_base_frame_zx[i];
     const real sps_S_in_turn1_y = sps_S_x*m->sps_base_frame_xy[i] +
@@ -1692,221 +1700,192 @@ INLINE void stage_sps_X(const prepared *m, size_t w, size_t i, size_t j, const r
         sps_S_y*m->sps_base_frame_yz[i] + sps_S_z*m->sps_base_frame_zz[i];
     /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
     const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
-    const real sps_c_3 = cosine(sps_y_3_extra);
+    v->sps_c_3 = cosine(sps_y_3_extra);
     /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-    const real sps_s_3 = sine(sps_y_3_extra);
+    v->sps_s_3 = sine(sps_y_3_extra);
     /* (sps-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x +
-        sps_S_in_turn1_y*sps_S_in_turn1_y;
-    const real sps_root_1 = m->sps_branch_1[i]*root(sps_root_1_t);
+    v->sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y;
+    const real sps_root_1 = m->sps_branch_1[i]*root(v->sps_root_1_t);
     /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_sps_root_1 = 1/sps_root_1;
-    const real sps_c_1 = inv_sps_root_1*sps_S_in_turn1_x;
+    v->sps_c_1 = inv_sps_root_1*sps_S_in_turn1_x;
     /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-    const real sps_s_1 = inv_sps_root_1*sps_S_in_turn1_y;
+    v->sps_s_1 = inv_sps_root_1*sps_S_in_turn1_y;
     /* (sps-root_2) amplitude, the length across axis 2, with the sign of the branch */
-    const real sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t;
-    const real sps_root_2 = m->sps_branch_2[i]*root(sps_root_2_t);
+    v->sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + v->sps_root_1_t;
+    v->sps_root_2 = m->sps_branch_2[i]*root(v->sps_root_2_t);
     /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_sps_root_2 = 1/sps_root_2;
-    const real sps_c_2 = inv_sps_root_2*sps_root_1;
+    const real inv_sps_root_2 = 1/v->sps_root_2;
+    v->sps_c_2 = inv_sps_root_2*sps_root_1;
+    /* (sps-q_2) displacement of joint 2 */
+    v->sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z;
     /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-    const real sps_e_1_in_axes3_x = sps_c_2*sps_s_3;
-    const real sps_e_1_in_axes3_y = sps_c_2*sps_c_3;
-    const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
-    const real sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2;
+    v->sps_e_1_in_axes3_x = v->sps_c_2*v->sps_s_3;
+    v->sps_e_1_in_axes3_y = v->sps_c_2*v->sps_c_3;
+    v->sps_v_1_in_axes3_x = v->sps_e_1_in_axes3_y*v->sps_root_2;
+    v->sps_v_1_in_axes3_y = -v->sps_e_1_in_axes3_x*v->sps_root_2;
     /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-    const real sps_v_2_in_axes3_x = -sps_root_2*sps_s_3;
-    const real sps_v_2_t = sps_c_3*sps_root_2;
+    v->sps_v_2_in_axes3_x = -v->sps_root_2*v->sps_s_3;
+    v->sps_v_2_t = v->sps_c_3*v->sps_root_2;
     /* (sps-w_1) reciprocal vector 1 */
-    const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
-        sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
-    const real inv_sps_w_1_t = 1/sps_w_1_t;
+    v->sps_w_1_t = v->sps_v_1_in_axes3_x*v->sps_v_2_t +
+        v->sps_v_1_in_axes3_y*v->sps_v_2_in_axes3_x;
+    v->inv_sps_w_1_t = 1/v->sps_w_1_t;
     /* (sps-w_4) reciprocal vector 3 */
-    const real sps_w_4_x = inv_sps_root_2*sps_S_x;
-    const real sps_w_4_y = inv_sps_root_2*sps_S_y;
-    const real sps_w_4_z = inv_sps_root_2*sps_S_z;
+    v->sps_w_4_x = inv_sps_root_2*sps_S_x;
+    v->sps_w_4_y = inv_sps_root_2*sps_S_y;
+    v->sps_w_4_z = inv_sps_root_2*sps_S_z;
     /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-    const real sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z;
-    const real sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y;
-    const real sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1;
-    const real sps_S_dot_rest_t_3 = -sps_c_1*sps_s_3 - sps_S_dot_rest_t*sps_s_1;
-    const real axis_y_sps_axes3_x = m->sps_base_frame_xz[i]*sps_e_1_in_axes3_y +
+    const real sps_S_dot_rest_t = v->sps_c_3*v->sps_e_1_in_axes2_y;
+    const real sps_S_dot_rest_t_2 = v->sps_s_1*v->sps_s_3 - sps_S_dot_rest_t*v->sps_c_1;
+    const real sps_S_dot_rest_t_3 = -v->sps_c_1*v->sps_s_3 - sps_S_dot_rest_t*v->sps_s_1;
+    v->axis_y_sps_axes3_x = m->sps_base_frame_xz[i]*v->sps_e_1_in_axes3_y +
         sps_S_dot_rest_t_2*m->sps_base_frame_xx[i] +
         sps_S_dot_rest_t_3*m->sps_base_frame_xy[i];
-    const real axis_y_sps_axes3_y = m->sps_base_frame_yz[i]*sps_e_1_in_axes3_y +
+    v->axis_y_sps_axes3_y = m->sps_base_frame_yz[i]*v->sps_e_1_in_axes3_y +
         sps_S_dot_rest_t_2*m->sps_base_frame_yx[i] +
         sps_S_dot_rest_t_3*m->sps_base_frame_yy[i];
-    const real axis_y_sps_axes3_z = m->sps_base_frame_zz[i]*sps_e_1_in_axes3_y +
+    v->axis_y_sps_axes3_z = m->sps_base_frame_zz[i]*v->sps_e_1_in_axes3_y +
         sps_S_dot_rest_t_2*m->sps_base_frame_zx[i] +
         sps_S_dot_rest_t_3*m->sps_base_frame_zy[i];
-    const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
-        axis_y_sps_axes3_z*sps_w_4_y;
-    const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
-        axis_y_sps_axes3_x*sps_w_4_z;
-    const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
-        axis_y_sps_axes3_y*sps_w_4_x;
-    /* (sps-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-    const real sps_g_in_axes3_x = axis_x_sps_axes3_x*m->gravity_x +
-        axis_x_sps_axes3_y*m->gravity_y + axis_x_sps_axes3_z*m->gravity_z;
-    const real sps_g_in_axes3_y = axis_y_sps_axes3_x*m->gravity_x +
-        axis_y_sps_axes3_y*m->gravity_y + axis_y_sps_axes3_z*m->gravity_z;
-    const real sps_g_in_axes3_z = m->gravity_x*sps_w_4_x + m->gravity_y*sps_w_4_y +
-        m->gravity_z*sps_w_4_z;
+    v->axis_x_sps_axes3_x = v->axis_y_sps_axes3_y*v->sps_w_4_z -
+        v->axis_y_sps_axes3_z*v->sps_w_4_y;
+    v->axis_x_sps_axes3_y = v->axis_y_sps_axes3_z*v->sps_w_4_x -
+        v->axis_y_sps_axes3_x*v->sps_w_4_z;
+    v->axis_x_sps_axes3_z = v->axis_y_sps_axes3_x*v->sps_w_4_y -
+        v->axis_y_sps_axes3_y*v->sps_w_4_x;
+    /* (sps-acc_4) acceleration of the reference point of link 4, less gravity */
+    v->sps_g_in_axes3_x = v->axis_x_sps_axes3_x*m->gravity_x +
+        v->axis_x_sps_axes3_y*m->gravity_y + v->axis_x_sps_axes3_z*m->gravity_z;
+    v->sps_g_in_axes3_y = v->axis_y_sps_axes3_x*m->gravity_x +
+        v->axis_y_sps_axes3_y*m->gravity_y + v->axis_y_sps_axes3_z*m->gravity_z;
+    v->sps_g_in_axes3_z = m->gravity_x*v->sps_w_4_x + m->gravity_y*v->sps_w_4_y +
+        m->gravity_z*v->sps_w_4_z;
+    /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    v->sps_mu_3_t_5 = v->sps_g_in_axes3_z*m->sps_h_group_3_in_axes3_y[i] -
+        v->sps_g_in_axes3_y*m->sps_h_group_3_in_axes3_z[i];
+    v->sps_mu_3_t_6 = v->sps_g_in_axes3_x*m->sps_h_group_3_in_axes3_z[i] -
+        v->sps_g_in_axes3_z*m->sps_h_group_3_in_axes3_x[i];
+    v->sps_mu_3_t_7 = v->sps_g_in_axes3_y*m->sps_h_group_3_in_axes3_x[i] -
+        v->sps_g_in_axes3_x*m->sps_h_group_3_in_axes3_y[i];
     /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-    const real sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y;
-    const real sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z;
-    const real sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x;
-    v->sps_q_x = sps_q_x;
-    v->sps_q_y = sps_q_y;
-    v->sps_q_z = sps_q_z;
-    v->sps_S_in_turn1_z = sps_S_in_turn1_z;
-    v->sps_c_3 = sps_c_3;
-    v->sps_s_3 = sps_s_3;
-    v->sps_root_1_t = sps_root_1_t;
-    v->sps_c_1 = sps_c_1;
-    v->sps_s_1 = sps_s_1;
-    v->sps_root_2_t = sps_root_2_t;
-    v->sps_root_2 = sps_root_2;
-    v->inv_sps_root_2 = inv_sps_root_2;
-    v->sps_c_2 = sps_c_2;
-    v->sps_e_1_in_axes3_x = sps_e_1_in_axes3_x;
-    v->sps_e_1_in_axes3_y = sps_e_1_in_axes3_y;
-    v->sps_v_1_in_axes3_x = sps_v_1_in_axes3_x;
-    v->sps_v_1_in_axes3_y = sps_v_1_in_axes3_y;
-    v->sps_v_2_in_axes3_x = sps_v_2_in_axes3_x;
-    v->sps_v_2_t = sps_v_2_t;
-    v->sps_w_1_t = sps_w_1_t;
-    v->inv_sps_w_1_t = inv_sps_w_1_t;
-    v->sps_w_4_x = sps_w_4_x;
-    v->sps_w_4_y = sps_w_4_y;
-    v->sps_w_4_z = sps_w_4_z;
-    v->sps_e_1_in_axes2_y = sps_e_1_in_axes2_y;
-    v->axis_y_sps_axes3_x = axis_y_sps_axes3_x;
-    v->axis_y_sps_axes3_y = axis_y_sps_axes3_y;
-    v->axis_y_sps_axes3_z = axis_y_sps_axes3_z;
-    v->axis_x_sps_axes3_x = axis_x_sps_axes3_x;
-    v->axis_x_sps_axes3_y = axis_x_sps_axes3_y;
-    v->axis_x_sps_axes3_z = axis_x_sps_axes3_z;
-    v->sps_g_in_axes3_x = sps_g_in_axes3_x;
-    v->sps_g_in_axes3_y = sps_g_in_axes3_y;
-    v->sps_g_in_axes3_z = sps_g_in_axes3_z;
-    v->sps_H_a_4_x = sps_H_a_4_x;
-    v->sps_H_a_4_y = sps_H_a_4_y;
-    v->sps_H_a_4_z = sps_H_a_4_z;
+    v->sps_H_a_4_x = v->sps_q_y*v->sps_w_4_z - v->sps_q_z*v->sps_w_4_y;
+    v->sps_H_a_4_y = v->sps_q_z*v->sps_w_4_x - v->sps_q_x*v->sps_w_4_z;
+    v->sps_H_a_4_z = v->sps_q_x*v->sps_w_4_y - v->sps_q_y*v->sps_w_4_x;
 }
 
-INLINE void stage_sps_A_X(size_t w, size_t j, const real *A, values_sps *v)
-{
-    /* (sps-a_p) acceleration of the connection point without its centripetal part */
-    const real alpha_y = A[4*w + j];
-    const real alpha_z = A[5*w + j];
-    const real t_ddot_x = A[0*w + j];
-    const real sps_a_p_x = t_ddot_x + alpha_y*v->sps_q_z - alpha_z*v->sps_q_y;
-    const real alpha_x = A[3*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real sps_a_p_y = t_ddot_y + alpha_z*v->sps_q_x - alpha_x*v->sps_q_z;
-    const real t_ddot_z = A[2*w + j];
-    const real sps_a_p_z = t_ddot_z + alpha_x*v->sps_q_y - alpha_y*v->sps_q_x;
-    v->sps_a_p_x = sps_a_p_x;
-    v->sps_a_p_y = sps_a_p_y;
-    v->sps_a_p_z = sps_a_p_z;
-}
-
-INLINE void stage_sps_V_X(size_t w, size_t i, size_t j, const real *V, values_sps *v)
+INLINE void stage_sps_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_sps *v)
 {
     static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     /* (sps-S_dot) velocity of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real sps_S_dot_t = omega_y*v->sps_q_z - omega_z*v->sps_q_y;
+    v->sps_S_dot_t = omega_y*v->sps_q_z - omega_z*v->sps_q_y;
     const real omega_x = V[3*w + j];
-    const real sps_S_dot_t_2 = omega_z*v->sps_q_x - omega_x*v->sps_q_z;
-    const real sps_S_dot_t_3 = omega_x*v->sps_q_y - omega_y*v->sps_q_x;
+    v->sps_S_dot_t_2 = omega_z*v->sps_q_x - omega_x*v->sps_q_z;
+    v->sps_S_dot_t_3 = omega_x*v->sps_q_y - omega_y*v->sps_q_x;
     const real t_dot_x = V[0*w + j];
-    const real sps_S_dot_x = t_dot_x + sps_S_dot_t;
+    const real sps_S_dot_x = t_dot_x + v->sps_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real sps_S_dot_y = t_dot_y + sps_S_dot_t_2;
+    const real sps_S_dot_y = t_dot_y + v->sps_S_dot_t_2;
     const real t_dot_z = V[2*w + j];
-    const real sps_S_dot_z = t_dot_z + sps_S_dot_t_3;
+    const real sps_S_dot_z = t_dot_z + v->sps_S_dot_t_3;
     /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
     const real sps_S_dot_rest_in_axes3_x = v->axis_x_sps_axes3_x*sps_S_dot_x +
         v->axis_x_sps_axes3_y*sps_S_dot_y + v->axis_x_sps_axes3_z*sps_S_dot_z;
     const real sps_S_dot_rest_in_axes3_y = v->axis_y_sps_axes3_x*sps_S_dot_x +
         v->axis_y_sps_axes3_y*sps_S_dot_y + v->axis_y_sps_axes3_z*sps_S_dot_z;
-    const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*v->sps_w_4_x + sps_S_dot_y*v->sps_w_4_y
-        + sps_S_dot_z*v->sps_w_4_z;
+    v->sps_S_dot_rest_in_axes3_z = sps_S_dot_x*v->sps_w_4_x + sps_S_dot_y*v->sps_w_4_y +
+        sps_S_dot_z*v->sps_w_4_z;
     /* (sps-qd_1) rate of joint 1 */
-    const real sps_qd_1 = v->inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*v->sps_v_2_in_axes3_x +
+    v->sps_qd_1 = v->inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*v->sps_v_2_in_axes3_x +
         sps_S_dot_rest_in_axes3_x*v->sps_v_2_t);
     /* (sps-qd_2) rate of joint 2 */
-    const real sps_qd_2_t = v->inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*v->sps_v_1_in_axes3_x
-        - sps_S_dot_rest_in_axes3_x*v->sps_v_1_in_axes3_y);
+    v->sps_qd_2_t = v->inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*v->sps_v_1_in_axes3_x -
+        sps_S_dot_rest_in_axes3_x*v->sps_v_1_in_axes3_y);
     /* (sps-omega_1) angular velocity of link 1 */
-    const real sps_omega_1_in_axes2_x = v->sps_c_2*sps_qd_1;
-    const real sps_omega_1_in_axes2_y = v->sps_e_1_in_axes2_y*sps_qd_1;
+    const real sps_omega_1_in_axes2_x = v->sps_c_2*v->sps_qd_1;
+    const real sps_omega_1_in_axes2_y = v->sps_e_1_in_axes2_y*v->sps_qd_1;
     /* (sps-omega_2) angular velocity of link 2 */
     const real sps_omega_2_in_axes3_x = sps_omega_1_in_axes2_x*v->sps_s_3 -
-        v->sps_c_3*sps_qd_2_t;
-    const real sps_omega_2_in_axes3_y = sps_qd_2_t*v->sps_s_3 +
+        v->sps_c_3*v->sps_qd_2_t;
+    const real sps_omega_2_in_axes3_y = v->sps_qd_2_t*v->sps_s_3 +
         v->sps_c_3*sps_omega_1_in_axes2_x;
     /* (sps-omega_3) angular velocity of link 3 */
     const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
     const real sps_omega_3_in_axes3_z = sps_yd_3 + sps_omega_1_in_axes2_y;
     /* (sps-W_3) centripetal tensor of link 3 */
-    const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
-    const real sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z;
-    const real sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z;
+    const real sps_W_3_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x;
+    const real sps_W_3_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y;
+    v->sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
+    v->sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z;
+    v->sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z;
+    v->sps_W_3_t_3 = sps_W_3_t + sps_W_3_t_2;
     /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    const real sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t;
+    v->sps_zeta_2_t = sps_omega_1_in_axes2_y*v->sps_qd_2_t;
+    v->sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*v->sps_qd_2_t;
     /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-    const real sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3;
-    const real sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3;
+    v->sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3;
+    v->sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3;
     /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x - v->sps_s_3*sps_zeta_2_t;
-    const real sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - v->sps_c_3*sps_zeta_2_t;
+    const real sps_beta_3_in_axes3_x = v->sps_zeta_3_in_axes3_x - v->sps_s_3*v->sps_zeta_2_t;
+    const real sps_beta_3_in_axes3_y = v->sps_zeta_3_in_axes3_y - v->sps_c_3*v->sps_zeta_2_t;
     /* (sps-bias) acceleration of the connection point at zero joint accelerations */
-    const real sps_bias_t = 2*sps_S_dot_rest_in_axes3_z;
-    const real sps_bias_in_axes3_x = sps_bias_t*sps_omega_2_in_axes3_y +
-        v->sps_root_2*(sps_W_3_in_axes3_xz + sps_beta_3_in_axes3_y);
-    const real sps_bias_in_axes3_y = v->sps_root_2*(sps_W_3_in_axes3_yz -
-        sps_beta_3_in_axes3_x) - sps_bias_t*sps_omega_2_in_axes3_x;
-    v->sps_S_dot_t = sps_S_dot_t;
-    v->sps_S_dot_t_2 = sps_S_dot_t_2;
-    v->sps_S_dot_t_3 = sps_S_dot_t_3;
-    v->sps_S_dot_rest_in_axes3_x = sps_S_dot_rest_in_axes3_x;
-    v->sps_S_dot_rest_in_axes3_y = sps_S_dot_rest_in_axes3_y;
-    v->sps_qd_2_t = sps_qd_2_t;
-    v->sps_omega_1_in_axes2_x = sps_omega_1_in_axes2_x;
-    v->sps_omega_2_in_axes3_x = sps_omega_2_in_axes3_x;
-    v->sps_omega_2_in_axes3_y = sps_omega_2_in_axes3_y;
-    v->sps_omega_3_in_axes3_z = sps_omega_3_in_axes3_z;
-    v->sps_W_3_in_axes3_xy = sps_W_3_in_axes3_xy;
-    v->sps_W_3_in_axes3_xz = sps_W_3_in_axes3_xz;
-    v->sps_W_3_in_axes3_yz = sps_W_3_in_axes3_yz;
-    v->sps_zeta_2_t = sps_zeta_2_t;
-    v->sps_zeta_3_in_axes3_x = sps_zeta_3_in_axes3_x;
-    v->sps_zeta_3_in_axes3_y = sps_zeta_3_in_axes3_y;
-    v->sps_bias_t = sps_bias_t;
-    v->sps_bias_in_axes3_x = sps_bias_in_axes3_x;
-    v->sps_bias_in_axes3_y = sps_bias_in_axes3_y;
+    const real sps_bias_t = 2*v->sps_S_dot_rest_in_axes3_z;
+    v->sps_bias_in_axes3_x = sps_bias_t*sps_omega_2_in_axes3_y +
+        v->sps_root_2*(v->sps_W_3_in_axes3_xz + sps_beta_3_in_axes3_y);
+    v->sps_bias_in_axes3_y = v->sps_root_2*(v->sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x) -
+        sps_bias_t*sps_omega_2_in_axes3_x;
+    /* (sps-phi_4) inertia force of link 4 from its turning about its reference point */
+    v->sps_phi_4_t = v->sps_W_3_t_3*m->sps_h_4_in_spec3_x[i];
+    /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    const real sps_mu_3_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z;
+    v->sps_mu_3_t_2 = m->sps_J_group_3_in_axes3_yz[i]*(sps_W_3_t_2 - sps_mu_3_t);
+    v->sps_mu_3_t_3 = m->sps_J_group_3_in_axes3_xz[i]*(sps_W_3_t - sps_mu_3_t);
+    v->sps_mu_3_t_4 = m->sps_J_group_3_in_axes3_xy[i]*(sps_W_3_t - sps_W_3_t_2);
+    /* (sps-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->sps_c_t = m->sps_h_4_in_spec3_y[i]*(sps_W_3_t_2 + sps_mu_3_t);
+    v->sps_c_t_2 = m->sps_h_4_in_spec3_z[i]*(sps_W_3_t + sps_mu_3_t);
 }
 
-INLINE void stage_sps_A_V_X(size_t w, size_t j, const real *V, values_sps *v)
+INLINE void stage_sps_A_V_X(size_t w, size_t j, const real *s, const real *A, values_sps *v)
 {
     /* (sps-S_ddot) acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real sps_S_ddot_x = omega_y*v->sps_S_dot_t_3 - omega_z*v->sps_S_dot_t_2 +
-        v->sps_a_p_x;
-    const real omega_x = V[3*w + j];
-    const real sps_S_ddot_y = omega_z*v->sps_S_dot_t - omega_x*v->sps_S_dot_t_3 +
-        v->sps_a_p_y;
-    const real sps_S_ddot_z = omega_x*v->sps_S_dot_t_2 - omega_y*v->sps_S_dot_t +
-        v->sps_a_p_z;
-    v->sps_S_ddot_x = sps_S_ddot_x;
-    v->sps_S_ddot_y = sps_S_ddot_y;
-    v->sps_S_ddot_z = sps_S_ddot_z;
+    const real B_p_xy = s[9*w + j];
+    const real B_p_xz = s[10*w + j];
+    const real W_p_t_4 = s[11*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real sps_S_ddot_x = t_ddot_x + B_p_xy*v->sps_q_y + B_p_xz*v->sps_q_z -
+        W_p_t_4*v->sps_q_x;
+    const real B_p_yx = s[12*w + j];
+    const real B_p_yz = s[13*w + j];
+    const real W_p_t_5 = s[14*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real sps_S_ddot_y = t_ddot_y + B_p_yx*v->sps_q_x + B_p_yz*v->sps_q_z -
+        W_p_t_5*v->sps_q_y;
+    const real B_p_zx = s[15*w + j];
+    const real B_p_zy = s[16*w + j];
+    const real W_p_t_6 = s[17*w + j];
+    const real t_ddot_z = A[2*w + j];
+    const real sps_S_ddot_z = t_ddot_z + B_p_zx*v->sps_q_x + B_p_zy*v->sps_q_y -
+        W_p_t_6*v->sps_q_z;
+    v->sps_S_ddot_in_axes3_x = v->axis_x_sps_axes3_x*sps_S_ddot_x +
+        v->axis_x_sps_axes3_y*sps_S_ddot_y + v->axis_x_sps_axes3_z*sps_S_ddot_z;
+    v->sps_S_ddot_in_axes3_y = v->axis_y_sps_axes3_x*sps_S_ddot_x +
+        v->axis_y_sps_axes3_y*sps_S_ddot_y + v->axis_y_sps_axes3_z*sps_S_ddot_z;
+    v->sps_S_ddot_in_axes3_z = sps_S_ddot_x*v->sps_w_4_x + sps_S_ddot_y*v->sps_w_4_y +
+        sps_S_ddot_z*v->sps_w_4_z;
+    /* (sps-rel) acceleration of the connection point left to the joint accelerations */
+    const real sps_rel_in_axes3_x = v->sps_S_ddot_in_axes3_x - v->sps_bias_in_axes3_x;
+    const real sps_rel_in_axes3_y = v->sps_S_ddot_in_axes3_y - v->sps_bias_in_axes3_y;
+    /* (sps-qdd_1) acceleration of joint 1 */
+    v->sps_qdd_1 = v->inv_sps_w_1_t*(sps_rel_in_axes3_x*v->sps_v_2_t +
+        sps_rel_in_axes3_y*v->sps_v_2_in_axes3_x);
+    /* (sps-qdd_2) acceleration of joint 2 */
+    v->sps_qdd_2_t = v->inv_sps_w_1_t*(sps_rel_in_axes3_y*v->sps_v_1_in_axes3_x -
+        sps_rel_in_axes3_x*v->sps_v_1_in_axes3_y);
 }
 
 INLINE void stage_sps_M_dynamics(const prepared *m, size_t i, values_sps *v)
@@ -1990,13 +1969,62 @@ INLINE void stage_sps_M_dynamics(const prepared *m, size_t i, values_sps *v)
     const real sps_d_c_in_axes3_yy = sps_d_alpha_2_in_axes3_xy*m->sps_h_4_in_spec3_x[i] -
         sps_d_alpha_1_in_axes3_zy*m->sps_h_4_in_spec3_y[i] +
         sps_d_Gamma_2_in_axes3_y*sps_w_2_t - sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_y;
-    v->sps_d_mu_3_in_axes3_zx = sps_d_mu_3_in_axes3_zx;
-    v->sps_d_mu_3_in_axes3_zy = sps_d_mu_3_in_axes3_zy;
-    v->sps_d_G_in_axes3_xz = sps_d_G_in_axes3_xz;
-    v->sps_d_G_in_axes3_yz = sps_d_G_in_axes3_yz;
-    v->sps_d_c_in_axes3_xx = sps_d_c_in_axes3_xx;
-    v->sps_d_c_in_axes3_xy = sps_d_c_in_axes3_xy;
-    v->sps_d_c_in_axes3_yy = sps_d_c_in_axes3_yy;
+    /* (sps-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real sps_Q_t = R(0.5)*sps_d_c_in_axes3_xx;
+    const real sps_Q_t_2 = R(0.5)*sps_d_c_in_axes3_yy;
+    const real sps_Q_t_3 = v->axis_x_sps_axes3_x*sps_Q_t - sps_d_G_in_axes3_xz*v->sps_w_4_x +
+        v->axis_y_sps_axes3_x*sps_d_c_in_axes3_xy;
+    const real sps_Q_t_4 = sps_d_G_in_axes3_xz*v->sps_w_4_y - v->axis_x_sps_axes3_y*sps_Q_t -
+        v->axis_y_sps_axes3_y*sps_d_c_in_axes3_xy;
+    const real sps_Q_t_5 = v->axis_x_sps_axes3_z*sps_Q_t - sps_d_G_in_axes3_xz*v->sps_w_4_z +
+        v->axis_y_sps_axes3_z*sps_d_c_in_axes3_xy;
+    const real sps_Q_t_6 = sps_d_G_in_axes3_yz*v->sps_w_4_x - v->axis_y_sps_axes3_x*sps_Q_t_2;
+    const real sps_Q_t_7 = v->axis_y_sps_axes3_y*sps_Q_t_2 - sps_d_G_in_axes3_yz*v->sps_w_4_y;
+    const real sps_Q_t_8 = v->axis_y_sps_axes3_z*sps_Q_t_2 - sps_d_G_in_axes3_yz*v->sps_w_4_z;
+    const real sps_Q_t_9 = v->axis_x_sps_axes3_x*sps_Q_t_3 - v->axis_y_sps_axes3_x*sps_Q_t_6;
+    v->sps_Q_xx = -2*sps_Q_t_9;
+    v->sps_Q_xy = v->axis_y_sps_axes3_y*sps_Q_t_6 - v->axis_y_sps_axes3_x*sps_Q_t_7 +
+        v->axis_x_sps_axes3_x*sps_Q_t_4 - v->axis_x_sps_axes3_y*sps_Q_t_3;
+    v->sps_Q_xz = v->axis_y_sps_axes3_z*sps_Q_t_6 - v->axis_y_sps_axes3_x*sps_Q_t_8 -
+        v->axis_x_sps_axes3_x*sps_Q_t_5 - v->axis_x_sps_axes3_z*sps_Q_t_3;
+    const real sps_Q_t_10 = v->axis_y_sps_axes3_y*sps_Q_t_7 - v->axis_x_sps_axes3_y*sps_Q_t_4;
+    v->sps_Q_yy = -2*sps_Q_t_10;
+    v->sps_Q_yz = v->axis_x_sps_axes3_z*sps_Q_t_4 - v->axis_y_sps_axes3_y*sps_Q_t_8 -
+        v->axis_y_sps_axes3_z*sps_Q_t_7 - v->axis_x_sps_axes3_y*sps_Q_t_5;
+    const real sps_Q_t_11 = v->axis_y_sps_axes3_z*sps_Q_t_8 + v->axis_x_sps_axes3_z*sps_Q_t_5;
+    v->sps_Q_zz = -2*sps_Q_t_11;
+    /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
+       degree of freedom of joint 3 */
+    v->sps_d_P_3_x = v->axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx +
+        v->axis_y_sps_axes3_x*sps_d_mu_3_in_axes3_zy;
+    v->sps_d_P_3_y = v->axis_x_sps_axes3_y*sps_d_mu_3_in_axes3_zx +
+        v->axis_y_sps_axes3_y*sps_d_mu_3_in_axes3_zy;
+    v->sps_d_P_3_z = v->axis_x_sps_axes3_z*sps_d_mu_3_in_axes3_zx +
+        v->axis_y_sps_axes3_z*sps_d_mu_3_in_axes3_zy;
+    /* (M_ta) coupling block of M */
+    const real sps_M_ta_t = -v->sps_Q_xy*v->sps_q_z;
+    const real sps_M_ta_t_2 = v->sps_Q_xz*v->sps_q_y;
+    v->sps_M_ta_t_3 = sps_M_ta_t + sps_M_ta_t_2;
+    v->sps_M_ta_t_4 = v->sps_Q_xx*v->sps_q_z - v->sps_Q_xz*v->sps_q_x;
+    v->sps_M_ta_t_5 = v->sps_Q_xy*v->sps_q_x - v->sps_Q_xx*v->sps_q_y;
+    v->sps_M_ta_t_6 = v->sps_Q_yz*v->sps_q_y - v->sps_Q_yy*v->sps_q_z;
+    const real sps_M_ta_t_7 = v->sps_Q_yz*v->sps_q_x;
+    v->sps_M_ta_t_8 = sps_M_ta_t + sps_M_ta_t_7;
+    v->sps_M_ta_t_9 = v->sps_Q_yy*v->sps_q_x - v->sps_Q_xy*v->sps_q_y;
+    v->sps_M_ta_t_10 = v->sps_Q_zz*v->sps_q_y - v->sps_Q_yz*v->sps_q_z;
+    v->sps_M_ta_t_11 = v->sps_Q_xz*v->sps_q_z - v->sps_Q_zz*v->sps_q_x;
+    v->sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2;
+    /* (M_aa) rotational block of M */
+    v->sps_M_aa_t = v->sps_M_ta_t_10*v->sps_q_y - v->sps_M_ta_t_6*v->sps_q_z;
+    v->sps_M_aa_t_2 = v->sps_M_ta_t_11*v->sps_q_y + v->sps_M_ta_t_8*v->sps_q_z;
+    v->sps_M_aa_t_3 = v->sps_M_ta_t_12*v->sps_q_y - v->sps_M_ta_t_9*v->sps_q_z;
+    v->sps_M_aa_t_4 = v->sps_M_ta_t_4*v->sps_q_z - v->sps_M_ta_t_11*v->sps_q_x;
+    v->sps_M_aa_t_5 = v->sps_M_ta_t_5*v->sps_q_z - v->sps_M_ta_t_12*v->sps_q_x;
+    v->sps_M_aa_t_6 = v->sps_M_ta_t_9*v->sps_q_x - v->sps_M_ta_t_5*v->sps_q_y;
+    /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
+    v->sps_M_ya_3_x = v->sps_d_P_3_z*v->sps_q_y - v->sps_d_P_3_y*v->sps_q_z;
+    v->sps_M_ya_3_y = v->sps_d_P_3_x*v->sps_q_z - v->sps_d_P_3_z*v->sps_q_x;
+    v->sps_M_ya_3_z = v->sps_d_P_3_y*v->sps_q_x - v->sps_d_P_3_x*v->sps_q_y;
 }
 
 INLINE void stage_sps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -2013,6 +2041,8 @@ INLINE void stage_sps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         v->axis_x_sps_axes3_y*sps_u_1_y + v->axis_x_sps_axes3_z*sps_u_1_z;
     const real sps_u_1_in_axes3_y = v->axis_y_sps_axes3_x*sps_u_1_x +
         v->axis_y_sps_axes3_y*sps_u_1_y + v->axis_y_sps_axes3_z*sps_u_1_z;
+    const real sps_u_1_in_axes3_z = sps_u_1_x*v->sps_w_4_x + sps_u_1_y*v->sps_w_4_y +
+        sps_u_1_z*v->sps_w_4_z;
     /* (sps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real sps_rel_o_in_axes3_x = sps_u_1_in_axes3_x - v->sps_bias_in_axes3_x;
@@ -2025,7 +2055,7 @@ INLINE void stage_sps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         sps_rel_o_in_axes3_x*v->sps_v_1_in_axes3_y);
     /* (sps-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real sps_alpha_2_o_in_axes2_x = v->sps_c_2*sps_qdd_1_o - v->sps_zeta_2_t;
-    const real sps_alpha_2_o_in_axes2_y = v->sps_omega_1_in_axes2_x*v->sps_qd_2_t +
+    const real sps_alpha_2_o_in_axes2_y = v->sps_zeta_2_in_axes2_y +
         v->sps_e_1_in_axes2_y*sps_qdd_1_o;
     /* (sps-alpha_3_o) remainder of: angular acceleration of link 3 */
     const real sps_alpha_3_o_in_axes3_x = v->sps_zeta_3_in_axes3_x - v->sps_c_3*sps_qdd_2_o_t
@@ -2039,44 +2069,26 @@ INLINE void stage_sps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real sps_B_3_o_in_axes3_yz = v->sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x;
     const real sps_B_3_o_in_axes3_zx = v->sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y;
     const real sps_B_3_o_in_axes3_zy = v->sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x;
-    /* (sps-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-    const real sps_acc_4_o_in_axes3_x = sps_u_1_in_axes3_x - v->sps_g_in_axes3_x;
-    const real sps_acc_4_o_in_axes3_y = sps_u_1_in_axes3_y - v->sps_g_in_axes3_y;
-    const real sps_acc_4_o_in_axes3_z = sps_u_1_x*v->sps_w_4_x + sps_u_1_y*v->sps_w_4_y +
-        sps_u_1_z*v->sps_w_4_z - v->sps_g_in_axes3_z;
     /* (sps-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
        */
-    const real sps_phi_4_o_t = v->sps_omega_2_in_axes3_x*v->sps_omega_2_in_axes3_x;
-    const real sps_phi_4_o_t_2 = v->sps_omega_2_in_axes3_y*v->sps_omega_2_in_axes3_y;
     const real sps_phi_4_o_in_axes3_z = sps_B_3_o_in_axes3_zx*m->sps_h_4_in_spec3_y[i] -
-        m->sps_h_4_in_spec3_x[i]*(sps_phi_4_o_t + sps_phi_4_o_t_2) +
-        sps_B_3_o_in_axes3_zy*m->sps_h_4_in_spec3_z[i];
+        v->sps_phi_4_t + sps_B_3_o_in_axes3_zy*m->sps_h_4_in_spec3_z[i];
     /* (sps-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
-    const real sps_mu_3_o_t = v->sps_omega_3_in_axes3_z*v->sps_omega_3_in_axes3_z;
-    const real sps_mu_3_o_in_axes3_x = sps_acc_4_o_in_axes3_z*m->sps_h_4_in_spec3_z[i] -
-        v->sps_g_in_axes3_z*m->sps_h_3_in_spec3_z[i] +
-        v->sps_g_in_axes3_y*m->sps_h_3_in_spec3_x[i] -
-        sps_acc_4_o_in_axes3_y*m->sps_h_4_in_spec3_x[i] +
-        m->sps_J_group_3_in_axes3_yz[i]*(sps_phi_4_o_t_2 - sps_mu_3_o_t) +
+    const real sps_mu_3_o_in_axes3_x = m->sps_h_4_in_spec3_z[i]*sps_u_1_in_axes3_z -
+        m->sps_h_4_in_spec3_x[i]*sps_u_1_in_axes3_y - v->sps_mu_3_t_5 + v->sps_mu_3_t_2 +
         sps_B_3_o_in_axes3_yx*m->sps_J_group_3_in_axes3_xz[i] +
         sps_B_3_o_in_axes3_zy*m->sps_Sigma_3_in_axes3_yy[i] -
         sps_B_3_o_in_axes3_yz*m->sps_Sigma_3_in_axes3_zz[i] -
         sps_B_3_o_in_axes3_zx*m->sps_J_group_3_in_axes3_xy[i];
-    const real sps_mu_3_o_in_axes3_y = v->sps_g_in_axes3_z*m->sps_h_3_in_spec3_y[i] -
-        sps_acc_4_o_in_axes3_z*m->sps_h_4_in_spec3_y[i] -
-        v->sps_g_in_axes3_x*m->sps_h_3_in_spec3_x[i] +
-        sps_acc_4_o_in_axes3_x*m->sps_h_4_in_spec3_x[i] -
-        m->sps_J_group_3_in_axes3_xz[i]*(sps_phi_4_o_t - sps_mu_3_o_t) -
+    const real sps_mu_3_o_in_axes3_y = m->sps_h_4_in_spec3_x[i]*sps_u_1_in_axes3_x -
+        m->sps_h_4_in_spec3_y[i]*sps_u_1_in_axes3_z - v->sps_mu_3_t_6 - v->sps_mu_3_t_3 -
         sps_B_3_o_in_axes3_xy*m->sps_J_group_3_in_axes3_yz[i] +
         sps_B_3_o_in_axes3_xz*m->sps_Sigma_3_in_axes3_zz[i] +
         sps_B_3_o_in_axes3_zy*m->sps_J_group_3_in_axes3_xy[i] -
         sps_B_3_o_in_axes3_zx*m->sps_Sigma_3_in_axes3_xx[i];
-    const real sps_mu_3_o_in_axes3_z = sps_acc_4_o_in_axes3_y*m->sps_h_4_in_spec3_y[i] -
-        v->sps_g_in_axes3_y*m->sps_h_3_in_spec3_y[i] +
-        v->sps_g_in_axes3_x*m->sps_h_3_in_spec3_z[i] -
-        sps_acc_4_o_in_axes3_x*m->sps_h_4_in_spec3_z[i] +
-        m->sps_J_group_3_in_axes3_xy[i]*(sps_phi_4_o_t - sps_phi_4_o_t_2) +
+    v->sps_mu_3_o_in_axes3_z = m->sps_h_4_in_spec3_y[i]*sps_u_1_in_axes3_y -
+        m->sps_h_4_in_spec3_z[i]*sps_u_1_in_axes3_x - v->sps_mu_3_t_7 + v->sps_mu_3_t_4 +
         sps_B_3_o_in_axes3_yx*m->sps_Sigma_3_in_axes3_xx[i] -
         sps_B_3_o_in_axes3_xy*m->sps_Sigma_3_in_axes3_yy[i] +
         sps_B_3_o_in_axes3_xz*m->sps_J_group_3_in_axes3_yz[i] -
@@ -2084,116 +2096,46 @@ INLINE void stage_sps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real sps_mu_3_o_in_axes2_z = v->sps_c_3*sps_mu_3_o_in_axes3_x -
         sps_mu_3_o_in_axes3_y*v->sps_s_3;
     /* (sps-Gamma_1_o) remainder of: moment about axis 1 of the distal links' inertia and weight */
-    const real sps_Gamma_1_o = v->sps_e_1_in_axes2_y*sps_mu_3_o_in_axes3_z +
+    const real sps_Gamma_1_o = v->sps_e_1_in_axes2_y*v->sps_mu_3_o_in_axes3_z +
         v->sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x +
         v->sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y;
     /* (sps-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real sps_c_o_in_axes3_x = m->sps_h_4_in_spec3_y[i]*(sps_mu_3_o_t + sps_phi_4_o_t_2)
-        - sps_B_3_o_in_axes3_xy*m->sps_h_4_in_spec3_z[i] -
+    const real sps_c_o_in_axes3_x = v->sps_c_t -
+        sps_B_3_o_in_axes3_xy*m->sps_h_4_in_spec3_z[i] -
         sps_B_3_o_in_axes3_xz*m->sps_h_4_in_spec3_x[i] -
         v->inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*v->sps_v_1_in_axes3_y +
         sps_Gamma_1_o*v->sps_v_2_t);
-    const real sps_c_o_in_axes3_y = m->sps_h_4_in_spec3_z[i]*(sps_mu_3_o_t + sps_phi_4_o_t) -
+    const real sps_c_o_in_axes3_y = v->sps_c_t_2 -
         sps_B_3_o_in_axes3_yx*m->sps_h_4_in_spec3_y[i] -
         sps_B_3_o_in_axes3_yz*m->sps_h_4_in_spec3_x[i] +
         v->inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*v->sps_v_1_in_axes3_x -
         sps_Gamma_1_o*v->sps_v_2_in_axes3_x);
     /* (sps-U) velocity and gravity terms of the leg force */
-    const real sps_U_x = sps_phi_4_o_in_axes3_z*v->sps_w_4_x -
+    v->sps_U_x = sps_phi_4_o_in_axes3_z*v->sps_w_4_x -
         v->axis_x_sps_axes3_x*sps_c_o_in_axes3_x - v->axis_y_sps_axes3_x*sps_c_o_in_axes3_y;
-    const real sps_U_y = sps_phi_4_o_in_axes3_z*v->sps_w_4_y -
+    v->sps_U_y = sps_phi_4_o_in_axes3_z*v->sps_w_4_y -
         v->axis_x_sps_axes3_y*sps_c_o_in_axes3_x - v->axis_y_sps_axes3_y*sps_c_o_in_axes3_y;
-    const real sps_U_z = sps_phi_4_o_in_axes3_z*v->sps_w_4_z -
+    v->sps_U_z = sps_phi_4_o_in_axes3_z*v->sps_w_4_z -
         v->axis_x_sps_axes3_z*sps_c_o_in_axes3_x - v->axis_y_sps_axes3_z*sps_c_o_in_axes3_y;
     /* (Z_a) rotational part of Z */
-    const real sps_Z_a_t = sps_U_z*v->sps_q_y - sps_U_y*v->sps_q_z;
-    const real sps_Z_a_t_2 = sps_U_x*v->sps_q_z - sps_U_z*v->sps_q_x;
-    const real sps_Z_a_t_3 = sps_U_y*v->sps_q_x - sps_U_x*v->sps_q_y;
-    v->sps_mu_3_o_in_axes3_z = sps_mu_3_o_in_axes3_z;
-    v->sps_U_x = sps_U_x;
-    v->sps_U_y = sps_U_y;
-    v->sps_U_z = sps_U_z;
-    v->sps_Z_a_t = sps_Z_a_t;
-    v->sps_Z_a_t_2 = sps_Z_a_t_2;
-    v->sps_Z_a_t_3 = sps_Z_a_t_3;
+    v->sps_Z_a_t = v->sps_U_z*v->sps_q_y - v->sps_U_y*v->sps_q_z;
+    v->sps_Z_a_t_2 = v->sps_U_x*v->sps_q_z - v->sps_U_z*v->sps_q_x;
+    v->sps_Z_a_t_3 = v->sps_U_y*v->sps_q_x - v->sps_U_x*v->sps_q_y;
 }
 
-INLINE void stage_sps_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
-    j, const real *s, const real *X, values_sps *v)
-{
-    /* (sps-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real sps_S_x = t_x - m->sps_base_point_x[i] + R_xy*m->sps_platform_point_y[i] +
-        R_xz*m->sps_platform_point_z[i] + R_xx*m->sps_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real sps_S_y = t_y - m->sps_base_point_y[i] + R_yx*m->sps_platform_point_x[i] +
-        R_yz*m->sps_platform_point_z[i] + R_yy*m->sps_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real sps_S_z = t_z - m->sps_base_point_z[i] + R_zx*m->sps_platform_point_x[i] +
-        R_zy*m->sps_platform_point_y[i] + R_zz*m->sps_platform_point_z[i];
-    const real sps_S_in_turn1_x = sps_S_x*m->sps_base_frame_xx[i] +
-        sps_S_y*m->sps_base_frame_yx[i] + sps_S_z*m->sps_base_frame_zx[i];
-    const real sps_S_in_turn1_y = sps_S_x*m->sps_base_frame_xy[i] +
-        sps_S_y*m->sps_base_frame_yy[i] + sps_S_z*m->sps_base_frame_zy[i];
-    const real sps_S_in_turn1_z = sps_S_x*m->sps_base_frame_xz[i] +
-        sps_S_y*m->sps_base_frame_yz[i] + sps_S_z*m->sps_base_frame_zz[i];
-    /* (sps-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x +
-        sps_S_in_turn1_y*sps_S_in_turn1_y;
-    const real sps_root_1 = m->sps_branch_1[i]*root(sps_root_1_t);
-    /* (sps-q_1) displacement of joint 1 */
-    const real inv_sps_root_1 = 1/sps_root_1;
-    /* (sps-root_2) amplitude, the length across axis 2, with the sign of the branch */
-    const real sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t;
-    const real sps_root_2 = m->sps_branch_2[i]*root(sps_root_2_t);
-    /* (sps-q_2) displacement of joint 2 */
-    const real inv_sps_root_2 = 1/sps_root_2;
-    v->sps_S_in_turn1_x = sps_S_in_turn1_x;
-    v->sps_S_in_turn1_y = sps_S_in_turn1_y;
-    v->sps_S_in_turn1_z = sps_S_in_turn1_z;
-    v->sps_root_1_t = sps_root_1_t;
-    v->sps_root_1 = sps_root_1;
-    v->inv_sps_root_1 = inv_sps_root_1;
-    v->sps_root_2_t = sps_root_2_t;
-    v->sps_root_2 = sps_root_2;
-    v->inv_sps_root_2 = inv_sps_root_2;
-}
-
-INLINE void stage_sps_legs_required(size_t w, size_t i, size_t j, const real *A, values_sps *v)
+INLINE void stage_sps_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
+    *A, values_sps *v)
 {
     static const size_t place_sps_ydd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
-    /* (sps-S_ddot) acceleration of the connection point */
-    const real sps_S_ddot_in_axes3_x = v->axis_x_sps_axes3_x*v->sps_S_ddot_x +
-        v->axis_x_sps_axes3_y*v->sps_S_ddot_y + v->axis_x_sps_axes3_z*v->sps_S_ddot_z;
-    const real sps_S_ddot_in_axes3_y = v->axis_y_sps_axes3_x*v->sps_S_ddot_x +
-        v->axis_y_sps_axes3_y*v->sps_S_ddot_y + v->axis_y_sps_axes3_z*v->sps_S_ddot_z;
-    /* (sps-rel) acceleration of the connection point left to the joint accelerations */
-    const real sps_rel_in_axes3_x = sps_S_ddot_in_axes3_x - v->sps_bias_in_axes3_x;
-    const real sps_rel_in_axes3_y = sps_S_ddot_in_axes3_y - v->sps_bias_in_axes3_y;
-    /* (sps-qdd_1) acceleration of joint 1 */
-    const real sps_qdd_1 = v->inv_sps_w_1_t*(sps_rel_in_axes3_x*v->sps_v_2_t +
-        sps_rel_in_axes3_y*v->sps_v_2_in_axes3_x);
-    /* (sps-qdd_2) acceleration of joint 2 */
-    const real sps_qdd_2_t = v->inv_sps_w_1_t*(sps_rel_in_axes3_y*v->sps_v_1_in_axes3_x -
-        sps_rel_in_axes3_x*v->sps_v_1_in_axes3_y);
     /* (sps-alpha_2) angular acceleration of link 2 */
-    const real sps_alpha_2_in_axes2_x = v->sps_c_2*sps_qdd_1 - v->sps_zeta_2_t;
-    const real sps_alpha_2_in_axes2_y = v->sps_omega_1_in_axes2_x*v->sps_qd_2_t +
-        v->sps_e_1_in_axes2_y*sps_qdd_1;
+    const real sps_alpha_2_in_axes2_x = v->sps_c_2*v->sps_qdd_1 - v->sps_zeta_2_t;
+    const real sps_alpha_2_in_axes2_y = v->sps_zeta_2_in_axes2_y +
+        v->sps_e_1_in_axes2_y*v->sps_qdd_1;
     /* (sps-alpha_3) angular acceleration of link 3 */
-    const real sps_alpha_3_in_axes3_x = v->sps_zeta_3_in_axes3_x - v->sps_c_3*sps_qdd_2_t +
+    const real sps_alpha_3_in_axes3_x = v->sps_zeta_3_in_axes3_x - v->sps_c_3*v->sps_qdd_2_t +
         sps_alpha_2_in_axes2_x*v->sps_s_3;
-    const real sps_alpha_3_in_axes3_y = v->sps_zeta_3_in_axes3_y + sps_qdd_2_t*v->sps_s_3 +
+    const real sps_alpha_3_in_axes3_y = v->sps_zeta_3_in_axes3_y + v->sps_qdd_2_t*v->sps_s_3 +
         sps_alpha_2_in_axes2_x*v->sps_c_3;
     const real sps_ydd_3 = A[place_sps_ydd_3[i]*w + j];
     const real sps_alpha_3_in_axes3_z = sps_ydd_3 + sps_alpha_2_in_axes2_y;
@@ -2204,27 +2146,50 @@ INLINE void stage_sps_legs_required(size_t w, size_t i, size_t j, const real *A,
     const real sps_B_3_in_axes3_yz = v->sps_W_3_in_axes3_yz - sps_alpha_3_in_axes3_x;
     const real sps_B_3_in_axes3_zx = v->sps_W_3_in_axes3_xz - sps_alpha_3_in_axes3_y;
     const real sps_B_3_in_axes3_zy = v->sps_W_3_in_axes3_yz + sps_alpha_3_in_axes3_x;
-    /* (sps-acc_4) acceleration of the reference point of link 4, less gravity */
-    const real sps_acc_4_in_axes3_x = sps_S_ddot_in_axes3_x - v->sps_g_in_axes3_x;
-    const real sps_acc_4_in_axes3_y = sps_S_ddot_in_axes3_y - v->sps_g_in_axes3_y;
-    const real sps_acc_4_in_axes3_z = v->sps_S_ddot_x*v->sps_w_4_x +
-        v->sps_S_ddot_y*v->sps_w_4_y + v->sps_S_ddot_z*v->sps_w_4_z - v->sps_g_in_axes3_z;
-    v->sps_B_3_in_axes3_xy = sps_B_3_in_axes3_xy;
-    v->sps_B_3_in_axes3_xz = sps_B_3_in_axes3_xz;
-    v->sps_B_3_in_axes3_yx = sps_B_3_in_axes3_yx;
-    v->sps_B_3_in_axes3_yz = sps_B_3_in_axes3_yz;
-    v->sps_B_3_in_axes3_zx = sps_B_3_in_axes3_zx;
-    v->sps_B_3_in_axes3_zy = sps_B_3_in_axes3_zy;
-    v->sps_acc_4_in_axes3_x = sps_acc_4_in_axes3_x;
-    v->sps_acc_4_in_axes3_y = sps_acc_4_in_axes3_y;
-    v->sps_acc_4_in_axes3_z = sps_acc_4_in_axes3_z;
+    /* (sps-phi_4) inertia force of link 4 from its turning about its reference point */
+    v->sps_phi_4_in_axes3_z = sps_B_3_in_axes3_zx*m->sps_h_4_in_spec3_y[i] - v->sps_phi_4_t +
+        sps_B_3_in_axes3_zy*m->sps_h_4_in_spec3_z[i];
+    /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    const real sps_mu_3_in_axes3_x = v->sps_S_ddot_in_axes3_z*m->sps_h_4_in_spec3_z[i] -
+        v->sps_S_ddot_in_axes3_y*m->sps_h_4_in_spec3_x[i] - v->sps_mu_3_t_5 + v->sps_mu_3_t_2
+        + sps_B_3_in_axes3_yx*m->sps_J_group_3_in_axes3_xz[i] +
+        sps_B_3_in_axes3_zy*m->sps_Sigma_3_in_axes3_yy[i] -
+        sps_B_3_in_axes3_yz*m->sps_Sigma_3_in_axes3_zz[i] -
+        sps_B_3_in_axes3_zx*m->sps_J_group_3_in_axes3_xy[i];
+    const real sps_mu_3_in_axes3_y = v->sps_S_ddot_in_axes3_x*m->sps_h_4_in_spec3_x[i] -
+        v->sps_S_ddot_in_axes3_z*m->sps_h_4_in_spec3_y[i] - v->sps_mu_3_t_6 - v->sps_mu_3_t_3
+        + sps_B_3_in_axes3_xz*m->sps_Sigma_3_in_axes3_zz[i] +
+        sps_B_3_in_axes3_zy*m->sps_J_group_3_in_axes3_xy[i] -
+        sps_B_3_in_axes3_xy*m->sps_J_group_3_in_axes3_yz[i] -
+        sps_B_3_in_axes3_zx*m->sps_Sigma_3_in_axes3_xx[i];
+    v->sps_mu_3_in_axes3_z = v->sps_S_ddot_in_axes3_y*m->sps_h_4_in_spec3_y[i] -
+        v->sps_S_ddot_in_axes3_x*m->sps_h_4_in_spec3_z[i] - v->sps_mu_3_t_7 + v->sps_mu_3_t_4
+        + sps_B_3_in_axes3_xz*m->sps_J_group_3_in_axes3_yz[i] +
+        sps_B_3_in_axes3_yx*m->sps_Sigma_3_in_axes3_xx[i] -
+        sps_B_3_in_axes3_xy*m->sps_Sigma_3_in_axes3_yy[i] -
+        sps_B_3_in_axes3_yz*m->sps_J_group_3_in_axes3_xz[i];
+    const real sps_mu_3_in_axes2_z = v->sps_c_3*sps_mu_3_in_axes3_x -
+        sps_mu_3_in_axes3_y*v->sps_s_3;
+    /* (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight */
+    const real sps_Gamma_1 = v->sps_e_1_in_axes2_y*v->sps_mu_3_in_axes3_z +
+        v->sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x + v->sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y;
+    /* (sps-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->sps_c_in_axes3_x = v->sps_c_t - sps_B_3_in_axes3_xy*m->sps_h_4_in_spec3_z[i] -
+        sps_B_3_in_axes3_xz*m->sps_h_4_in_spec3_x[i] -
+        v->inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v->sps_v_1_in_axes3_y +
+        sps_Gamma_1*v->sps_v_2_t);
+    v->sps_c_in_axes3_y = v->sps_c_t_2 - sps_B_3_in_axes3_yx*m->sps_h_4_in_spec3_y[i] -
+        sps_B_3_in_axes3_yz*m->sps_h_4_in_spec3_x[i] +
+        v->inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v->sps_v_1_in_axes3_x -
+        sps_Gamma_1*v->sps_v_2_in_axes3_x);
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2236,30 +2201,28 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
-    stage_V_X(w, k, V, v);
-    stage_M_dynamics(m, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
-    s[18*w + k] = v->Z_p_x;
-    s[19*w + k] = v->Z_p_y;
-    s[20*w + k] = v->Z_p_z;
-    s[21*w + k] = v->Z_q_x;
-    s[22*w + k] = v->Z_q_y;
-    s[23*w + k] = v->Z_q_z;
+    s[27*w + k] = v->Z_p_x;
+    s[28*w + k] = v->Z_p_y;
+    s[29*w + k] = v->Z_p_z;
+    s[30*w + k] = v->Z_q_x;
+    s[31*w + k] = v->Z_q_y;
+    s[32*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2267,89 +2230,33 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_sps v;
     stage_sps_X(m, w, i, j, s, X, &v);
-    stage_sps_V_X(w, i, j, V, &v);
+    stage_sps_V_X(m, w, i, j, V, &v);
     stage_sps_M_dynamics(m, i, &v);
     stage_sps_Z_dynamics(m, w, i, j, V, &v);
-    /* (sps-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real sps_Q_t = R(0.5)*v.sps_d_c_in_axes3_xx;
-    const real sps_Q_t_2 = R(0.5)*v.sps_d_c_in_axes3_yy;
-    const real sps_Q_t_3 = v.axis_x_sps_axes3_x*sps_Q_t - v.sps_d_G_in_axes3_xz*v.sps_w_4_x +
-        v.axis_y_sps_axes3_x*v.sps_d_c_in_axes3_xy;
-    const real sps_Q_t_4 = v.sps_d_G_in_axes3_xz*v.sps_w_4_y - v.axis_x_sps_axes3_y*sps_Q_t -
-        v.axis_y_sps_axes3_y*v.sps_d_c_in_axes3_xy;
-    const real sps_Q_t_5 = v.axis_x_sps_axes3_z*sps_Q_t - v.sps_d_G_in_axes3_xz*v.sps_w_4_z +
-        v.axis_y_sps_axes3_z*v.sps_d_c_in_axes3_xy;
-    const real sps_Q_t_6 = v.sps_d_G_in_axes3_yz*v.sps_w_4_x - v.axis_y_sps_axes3_x*sps_Q_t_2;
-    const real sps_Q_t_7 = v.axis_y_sps_axes3_y*sps_Q_t_2 - v.sps_d_G_in_axes3_yz*v.sps_w_4_y;
-    const real sps_Q_t_8 = v.axis_y_sps_axes3_z*sps_Q_t_2 - v.sps_d_G_in_axes3_yz*v.sps_w_4_z;
-    const real sps_Q_t_9 = v.axis_x_sps_axes3_x*sps_Q_t_3 - v.axis_y_sps_axes3_x*sps_Q_t_6;
-    const real sps_Q_xx = -2*sps_Q_t_9;
-    const real sps_Q_xy = v.axis_y_sps_axes3_y*sps_Q_t_6 - v.axis_y_sps_axes3_x*sps_Q_t_7 +
-        v.axis_x_sps_axes3_x*sps_Q_t_4 - v.axis_x_sps_axes3_y*sps_Q_t_3;
-    const real sps_Q_xz = v.axis_y_sps_axes3_z*sps_Q_t_6 - v.axis_y_sps_axes3_x*sps_Q_t_8 -
-        v.axis_x_sps_axes3_x*sps_Q_t_5 - v.axis_x_sps_axes3_z*sps_Q_t_3;
-    const real sps_Q_t_10 = v.axis_y_sps_axes3_y*sps_Q_t_7 - v.axis_x_sps_axes3_y*sps_Q_t_4;
-    const real sps_Q_yy = -2*sps_Q_t_10;
-    const real sps_Q_yz = v.axis_x_sps_axes3_z*sps_Q_t_4 - v.axis_y_sps_axes3_y*sps_Q_t_8 -
-        v.axis_y_sps_axes3_z*sps_Q_t_7 - v.axis_x_sps_axes3_y*sps_Q_t_5;
-    const real sps_Q_t_11 = v.axis_y_sps_axes3_z*sps_Q_t_8 + v.axis_x_sps_axes3_z*sps_Q_t_5;
-    const real sps_Q_zz = -2*sps_Q_t_11;
-    /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
-       degree of freedom of joint 3 */
-    const real sps_d_P_3_x = v.axis_x_sps_axes3_x*v.sps_d_mu_3_in_axes3_zx +
-        v.axis_y_sps_axes3_x*v.sps_d_mu_3_in_axes3_zy;
-    const real sps_d_P_3_y = v.axis_x_sps_axes3_y*v.sps_d_mu_3_in_axes3_zx +
-        v.axis_y_sps_axes3_y*v.sps_d_mu_3_in_axes3_zy;
-    const real sps_d_P_3_z = v.axis_x_sps_axes3_z*v.sps_d_mu_3_in_axes3_zx +
-        v.axis_y_sps_axes3_z*v.sps_d_mu_3_in_axes3_zy;
-    /* (M_ta) coupling block of M */
-    const real sps_M_ta_t = -sps_Q_xy*v.sps_q_z;
-    const real sps_M_ta_t_2 = sps_Q_xz*v.sps_q_y;
-    const real sps_M_ta_t_3 = sps_M_ta_t + sps_M_ta_t_2;
-    const real sps_M_ta_t_4 = sps_Q_xx*v.sps_q_z - sps_Q_xz*v.sps_q_x;
-    const real sps_M_ta_t_5 = sps_Q_xy*v.sps_q_x - sps_Q_xx*v.sps_q_y;
-    const real sps_M_ta_t_6 = sps_Q_yz*v.sps_q_y - sps_Q_yy*v.sps_q_z;
-    const real sps_M_ta_t_7 = sps_Q_yz*v.sps_q_x;
-    const real sps_M_ta_t_8 = sps_M_ta_t + sps_M_ta_t_7;
-    const real sps_M_ta_t_9 = sps_Q_yy*v.sps_q_x - sps_Q_xy*v.sps_q_y;
-    const real sps_M_ta_t_10 = sps_Q_zz*v.sps_q_y - sps_Q_yz*v.sps_q_z;
-    const real sps_M_ta_t_11 = sps_Q_xz*v.sps_q_z - sps_Q_zz*v.sps_q_x;
-    const real sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2;
-    /* (M_aa) rotational block of M */
-    const real sps_M_aa_t = sps_M_ta_t_10*v.sps_q_y - sps_M_ta_t_6*v.sps_q_z;
-    const real sps_M_aa_t_2 = sps_M_ta_t_11*v.sps_q_y + sps_M_ta_t_8*v.sps_q_z;
-    const real sps_M_aa_t_3 = sps_M_ta_t_12*v.sps_q_y - sps_M_ta_t_9*v.sps_q_z;
-    const real sps_M_aa_t_4 = sps_M_ta_t_4*v.sps_q_z - sps_M_ta_t_11*v.sps_q_x;
-    const real sps_M_aa_t_5 = sps_M_ta_t_5*v.sps_q_z - sps_M_ta_t_12*v.sps_q_x;
-    const real sps_M_aa_t_6 = sps_M_ta_t_9*v.sps_q_x - sps_M_ta_t_5*v.sps_q_y;
-    /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
-    const real sps_M_ya_3_x = sps_d_P_3_z*v.sps_q_y - sps_d_P_3_y*v.sps_q_z;
-    const real sps_M_ya_3_y = sps_d_P_3_x*v.sps_q_z - sps_d_P_3_z*v.sps_q_x;
-    const real sps_M_ya_3_z = sps_d_P_3_y*v.sps_q_x - sps_d_P_3_x*v.sps_q_y;
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, sps_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, sps_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, sps_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, sps_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, sps_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, sps_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, sps_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, sps_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, sps_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, sps_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, sps_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, sps_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, sps_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, sps_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, sps_M_ta_t_12);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, sps_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, sps_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, sps_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, sps_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, sps_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, sps_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.sps_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.sps_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.sps_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.sps_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.sps_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.sps_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.sps_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.sps_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.sps_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.sps_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.sps_M_ta_t_8);  /* M_ta_t */
+    gather(&terms[11*count + k], add, v.sps_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.sps_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.sps_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.sps_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.sps_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.sps_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.sps_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.sps_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.sps_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.sps_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
     gather(&terms[21*count + k], add, v.sps_U_x);  /* Z_t_x_of_legs */
     gather(&terms[22*count + k], add, v.sps_U_y);  /* Z_t_y_of_legs */
@@ -2361,20 +2268,21 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
     /* (sps-P_3_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
        joint 3 */
     o[0*count + k] = v.sps_mu_3_o_in_axes3_z;
-    /* (sps-d_P_3) */
-    o[1*count + k] = sps_d_P_3_x;
-    o[2*count + k] = sps_d_P_3_x;
-    o[3*count + k] = sps_d_P_3_y;
-    o[4*count + k] = sps_d_P_3_y;
-    o[5*count + k] = sps_d_P_3_z;
-    o[6*count + k] = sps_d_P_3_z;
-    /* (sps-M_ya_3) */
-    o[7*count + k] = sps_M_ya_3_x;
-    o[8*count + k] = sps_M_ya_3_x;
-    o[9*count + k] = sps_M_ya_3_y;
-    o[10*count + k] = sps_M_ya_3_y;
-    o[11*count + k] = sps_M_ya_3_z;
-    o[12*count + k] = sps_M_ya_3_z;
+    /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
+       degree of freedom of joint 3 */
+    o[1*count + k] = v.sps_d_P_3_x;
+    o[2*count + k] = v.sps_d_P_3_x;
+    o[3*count + k] = v.sps_d_P_3_y;
+    o[4*count + k] = v.sps_d_P_3_y;
+    o[5*count + k] = v.sps_d_P_3_z;
+    o[6*count + k] = v.sps_d_P_3_z;
+    /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
+    o[7*count + k] = v.sps_M_ya_3_x;
+    o[8*count + k] = v.sps_M_ya_3_x;
+    o[9*count + k] = v.sps_M_ya_3_y;
+    o[10*count + k] = v.sps_M_ya_3_y;
+    o[11*count + k] = v.sps_M_ya_3_z;
+    o[12*count + k] = v.sps_M_ya_3_z;
     /* (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the
        extra degree of freedom of joint 3 */
     o[13*count + k] = m->sps_J_group_3_in_axes3_zz[i];
@@ -2386,17 +2294,17 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
     o[17*count + k] = v.sps_H_a_4_x;
     o[18*count + k] = v.sps_H_a_4_y;
     o[19*count + k] = v.sps_H_a_4_z;
-    o[21*count + k] = ((v.sps_mu_3_o_in_axes3_z + (sps_d_P_3_x + sps_d_P_3_y)) + ((sps_d_P_3_z
-        + sps_M_ya_3_x) + (sps_M_ya_3_y + sps_M_ya_3_z))) + ((m->sps_J_group_3_in_axes3_zz[i]
-        + (v.sps_w_4_x + v.sps_w_4_y)) + ((v.sps_w_4_z + v.sps_H_a_4_x) + (v.sps_H_a_4_y +
-        v.sps_H_a_4_z)));
+    o[21*count + k] = ((v.sps_mu_3_o_in_axes3_z + (v.sps_d_P_3_x + v.sps_d_P_3_y)) +
+        ((v.sps_d_P_3_z + v.sps_M_ya_3_x) + (v.sps_M_ya_3_y + v.sps_M_ya_3_z))) +
+        ((m->sps_J_group_3_in_axes3_zz[i] + (v.sps_w_4_x + v.sps_w_4_y)) + ((v.sps_w_4_z +
+        v.sps_H_a_4_x) + (v.sps_H_a_4_y + v.sps_H_a_4_z)));
     o[20*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
         LEAST_2);
 }
 
 INLINE void dynamics_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *M, real *Z, real *H, verdict *t)
+    *o, real *M, real *Z, real *H, status_flags *t)
 {
     Z[(6 + i)*w + k] = o[0*count + at];
     M[((6 + i)*NV)*w + k] = o[1*count + at];
@@ -2423,7 +2331,7 @@ INLINE void dynamics_place_sps(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2434,58 +2342,58 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
-    const real Z_p_x = s[18*w + k];
+    const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[21*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
+    const real Z_p_y = s[28*w + k];
     const real Z_t_y_of_legs = sums[22*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
+    const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[23*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
-    const real Z_q_x = s[21*w + k];
+    const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
-    const real Z_q_y = s[22*w + k];
+    const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
-    const real Z_q_z = s[23*w + k];
+    const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2547,9 +2455,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
-    real s[24] = {0}, sums[27] = {0};
+    real s[33] = {0}, sums[27] = {0};
     real terms_sps[27*LEGS(LEGS_OF_sps)] = {0}, o_sps[22*LEGS(LEGS_OF_sps)] = {0};
     clear(M, NV*NV);
     clear(H, NV*NU);
@@ -2569,9 +2477,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[27*LANES];
+    real s[33*LANES], sums[27*LANES];
     real o_sps[22*LANES];
     clear(M, NV*NV*LANES);
     clear(H, NV*NU*LANES);
@@ -2596,7 +2504,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 
 /* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2608,21 +2516,16 @@ INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, value
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
-{
-    stage_M_dynamics(m, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2631,127 +2534,57 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_sps v;
     stage_sps_X(m, w, i, j, s, X, &v);
     stage_sps_M_dynamics(m, i, &v);
-    /* (sps-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real sps_Q_t = v.sps_c_3*v.sps_e_1_in_axes2_y;
-    const real sps_Q_t_2 = v.sps_s_1*v.sps_s_3 - sps_Q_t*v.sps_c_1;
-    const real sps_Q_t_3 = -v.sps_c_1*v.sps_s_3 - sps_Q_t*v.sps_s_1;
-    const real axis_y_sps_axes3_x = m->sps_base_frame_xz[i]*v.sps_e_1_in_axes3_y +
-        sps_Q_t_2*m->sps_base_frame_xx[i] + sps_Q_t_3*m->sps_base_frame_xy[i];
-    const real axis_y_sps_axes3_y = m->sps_base_frame_yz[i]*v.sps_e_1_in_axes3_y +
-        sps_Q_t_2*m->sps_base_frame_yx[i] + sps_Q_t_3*m->sps_base_frame_yy[i];
-    const real axis_y_sps_axes3_z = m->sps_base_frame_zz[i]*v.sps_e_1_in_axes3_y +
-        sps_Q_t_2*m->sps_base_frame_zx[i] + sps_Q_t_3*m->sps_base_frame_zy[i];
-    const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*v.sps_w_4_z -
-        axis_y_sps_axes3_z*v.sps_w_4_y;
-    const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*v.sps_w_4_x -
-        axis_y_sps_axes3_x*v.sps_w_4_z;
-    const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*v.sps_w_4_y -
-        axis_y_sps_axes3_y*v.sps_w_4_x;
-    const real sps_Q_t_4 = R(0.5)*v.sps_d_c_in_axes3_xx;
-    const real sps_Q_t_5 = R(0.5)*v.sps_d_c_in_axes3_yy;
-    const real sps_Q_t_6 = axis_x_sps_axes3_x*sps_Q_t_4 - v.sps_d_G_in_axes3_xz*v.sps_w_4_x +
-        axis_y_sps_axes3_x*v.sps_d_c_in_axes3_xy;
-    const real sps_Q_t_7 = v.sps_d_G_in_axes3_xz*v.sps_w_4_y - axis_x_sps_axes3_y*sps_Q_t_4 -
-        axis_y_sps_axes3_y*v.sps_d_c_in_axes3_xy;
-    const real sps_Q_t_8 = axis_x_sps_axes3_z*sps_Q_t_4 - v.sps_d_G_in_axes3_xz*v.sps_w_4_z +
-        axis_y_sps_axes3_z*v.sps_d_c_in_axes3_xy;
-    const real sps_Q_t_9 = v.sps_d_G_in_axes3_yz*v.sps_w_4_x - axis_y_sps_axes3_x*sps_Q_t_5;
-    const real sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_5 - v.sps_d_G_in_axes3_yz*v.sps_w_4_y;
-    const real sps_Q_t_11 = axis_y_sps_axes3_z*sps_Q_t_5 - v.sps_d_G_in_axes3_yz*v.sps_w_4_z;
-    const real sps_Q_t_12 = axis_x_sps_axes3_x*sps_Q_t_6 - axis_y_sps_axes3_x*sps_Q_t_9;
-    const real sps_Q_xx = -2*sps_Q_t_12;
-    const real sps_Q_xy = axis_y_sps_axes3_y*sps_Q_t_9 - axis_y_sps_axes3_x*sps_Q_t_10 +
-        axis_x_sps_axes3_x*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_6;
-    const real sps_Q_xz = axis_y_sps_axes3_z*sps_Q_t_9 - axis_y_sps_axes3_x*sps_Q_t_11 -
-        axis_x_sps_axes3_x*sps_Q_t_8 - axis_x_sps_axes3_z*sps_Q_t_6;
-    const real sps_Q_t_13 = axis_y_sps_axes3_y*sps_Q_t_10 - axis_x_sps_axes3_y*sps_Q_t_7;
-    const real sps_Q_yy = -2*sps_Q_t_13;
-    const real sps_Q_yz = axis_x_sps_axes3_z*sps_Q_t_7 - axis_y_sps_axes3_y*sps_Q_t_11 -
-        axis_y_sps_axes3_z*sps_Q_t_10 - axis_x_sps_axes3_y*sps_Q_t_8;
-    const real sps_Q_t_14 = axis_y_sps_axes3_z*sps_Q_t_11 + axis_x_sps_axes3_z*sps_Q_t_8;
-    const real sps_Q_zz = -2*sps_Q_t_14;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v.sps_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.sps_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.sps_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.sps_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.sps_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.sps_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.sps_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.sps_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.sps_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.sps_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.sps_M_ta_t_8);  /* M_ta_t */
+    gather(&terms[11*count + k], add, v.sps_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.sps_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.sps_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.sps_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.sps_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.sps_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.sps_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.sps_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.sps_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.sps_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
        degree of freedom of joint 3 */
-    const real sps_d_P_3_x = axis_x_sps_axes3_x*v.sps_d_mu_3_in_axes3_zx +
-        axis_y_sps_axes3_x*v.sps_d_mu_3_in_axes3_zy;
-    const real sps_d_P_3_y = axis_x_sps_axes3_y*v.sps_d_mu_3_in_axes3_zx +
-        axis_y_sps_axes3_y*v.sps_d_mu_3_in_axes3_zy;
-    const real sps_d_P_3_z = axis_x_sps_axes3_z*v.sps_d_mu_3_in_axes3_zx +
-        axis_y_sps_axes3_z*v.sps_d_mu_3_in_axes3_zy;
-    /* (M_ta) coupling block of M */
-    const real sps_M_ta_t = -sps_Q_xy*v.sps_q_z;
-    const real sps_M_ta_t_2 = sps_Q_xz*v.sps_q_y;
-    const real sps_M_ta_t_3 = sps_M_ta_t + sps_M_ta_t_2;
-    const real sps_M_ta_t_4 = sps_Q_xx*v.sps_q_z - sps_Q_xz*v.sps_q_x;
-    const real sps_M_ta_t_5 = sps_Q_xy*v.sps_q_x - sps_Q_xx*v.sps_q_y;
-    const real sps_M_ta_t_6 = sps_Q_yz*v.sps_q_y - sps_Q_yy*v.sps_q_z;
-    const real sps_M_ta_t_7 = sps_Q_yz*v.sps_q_x;
-    const real sps_M_ta_t_8 = sps_M_ta_t + sps_M_ta_t_7;
-    const real sps_M_ta_t_9 = sps_Q_yy*v.sps_q_x - sps_Q_xy*v.sps_q_y;
-    const real sps_M_ta_t_10 = sps_Q_zz*v.sps_q_y - sps_Q_yz*v.sps_q_z;
-    const real sps_M_ta_t_11 = sps_Q_xz*v.sps_q_z - sps_Q_zz*v.sps_q_x;
-    const real sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2;
-    /* (M_aa) rotational block of M */
-    const real sps_M_aa_t = sps_M_ta_t_10*v.sps_q_y - sps_M_ta_t_6*v.sps_q_z;
-    const real sps_M_aa_t_2 = sps_M_ta_t_11*v.sps_q_y + sps_M_ta_t_8*v.sps_q_z;
-    const real sps_M_aa_t_3 = sps_M_ta_t_12*v.sps_q_y - sps_M_ta_t_9*v.sps_q_z;
-    const real sps_M_aa_t_4 = sps_M_ta_t_4*v.sps_q_z - sps_M_ta_t_11*v.sps_q_x;
-    const real sps_M_aa_t_5 = sps_M_ta_t_5*v.sps_q_z - sps_M_ta_t_12*v.sps_q_x;
-    const real sps_M_aa_t_6 = sps_M_ta_t_9*v.sps_q_x - sps_M_ta_t_5*v.sps_q_y;
+    o[0*count + k] = v.sps_d_P_3_x;
+    o[1*count + k] = v.sps_d_P_3_x;
+    o[2*count + k] = v.sps_d_P_3_y;
+    o[3*count + k] = v.sps_d_P_3_y;
+    o[4*count + k] = v.sps_d_P_3_z;
+    o[5*count + k] = v.sps_d_P_3_z;
     /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
-    const real sps_M_ya_3_x = sps_d_P_3_z*v.sps_q_y - sps_d_P_3_y*v.sps_q_z;
-    const real sps_M_ya_3_y = sps_d_P_3_x*v.sps_q_z - sps_d_P_3_z*v.sps_q_x;
-    const real sps_M_ya_3_z = sps_d_P_3_y*v.sps_q_x - sps_d_P_3_x*v.sps_q_y;
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, sps_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, sps_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, sps_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, sps_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, sps_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, sps_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, sps_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, sps_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, sps_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, sps_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, sps_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, sps_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, sps_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, sps_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, sps_M_ta_t_12);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, sps_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, sps_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, sps_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, sps_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, sps_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, sps_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (sps-d_P_3) */
-    o[0*count + k] = sps_d_P_3_x;
-    o[1*count + k] = sps_d_P_3_x;
-    o[2*count + k] = sps_d_P_3_y;
-    o[3*count + k] = sps_d_P_3_y;
-    o[4*count + k] = sps_d_P_3_z;
-    o[5*count + k] = sps_d_P_3_z;
-    /* (sps-M_ya_3) */
-    o[6*count + k] = sps_M_ya_3_x;
-    o[7*count + k] = sps_M_ya_3_x;
-    o[8*count + k] = sps_M_ya_3_y;
-    o[9*count + k] = sps_M_ya_3_y;
-    o[10*count + k] = sps_M_ya_3_z;
-    o[11*count + k] = sps_M_ya_3_z;
+    o[6*count + k] = v.sps_M_ya_3_x;
+    o[7*count + k] = v.sps_M_ya_3_x;
+    o[8*count + k] = v.sps_M_ya_3_y;
+    o[9*count + k] = v.sps_M_ya_3_y;
+    o[10*count + k] = v.sps_M_ya_3_z;
+    o[11*count + k] = v.sps_M_ya_3_z;
     /* (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the
        extra degree of freedom of joint 3 */
     o[12*count + k] = m->sps_J_group_3_in_axes3_zz[i];
-    o[14*count + k] = (sps_d_P_3_x + (sps_d_P_3_y + sps_d_P_3_z)) + ((sps_M_ya_3_x +
-        sps_M_ya_3_y) + (sps_M_ya_3_z + m->sps_J_group_3_in_axes3_zz[i]));
+    o[14*count + k] = (v.sps_d_P_3_x + (v.sps_d_P_3_y + v.sps_d_P_3_z)) + ((v.sps_M_ya_3_x +
+        v.sps_M_ya_3_y) + (v.sps_M_ya_3_z + m->sps_J_group_3_in_axes3_zz[i]));
     o[13*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
         LEAST_2);
 }
 
 INLINE void M_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     M[((6 + i)*NV)*w + k] = o[0*count + at];
     M[(6 + i)*w + k] = o[1*count + at];
@@ -2771,7 +2604,7 @@ INLINE void M_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, c
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2782,37 +2615,37 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -2866,9 +2699,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[18] = {0}, sums[21] = {0};
+    real s[27] = {0}, sums[21] = {0};
     real terms_sps[21*LEGS(LEGS_OF_sps)] = {0}, o_sps[15*LEGS(LEGS_OF_sps)] = {0};
     clear(M, NV*NV);
     values v;
@@ -2882,19 +2715,18 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
-    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
-    real s[18*LANES], sums[21*LANES];
+    real s[27*LANES], sums[21*LANES];
     real o_sps[15*LANES];
     clear(M, NV*NV*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         M_before(m, LANES, k, X, &v, s, t);
-        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
@@ -2912,7 +2744,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 
 /* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2929,14 +2761,13 @@ INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, value
 
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[9*w + k] = v->Z_p_x;
-    s[10*w + k] = v->Z_p_y;
-    s[11*w + k] = v->Z_p_z;
-    s[12*w + k] = v->Z_q_x;
-    s[13*w + k] = v->Z_q_y;
-    s[14*w + k] = v->Z_q_z;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2944,7 +2775,7 @@ INLINE void Z_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_sps v;
     stage_sps_X(m, w, i, j, s, X, &v);
-    stage_sps_V_X(w, i, j, V, &v);
+    stage_sps_V_X(m, w, i, j, V, &v);
     stage_sps_Z_dynamics(m, w, i, j, V, &v);
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v.sps_U_x);  /* Z_t_x_of_legs */
@@ -2964,34 +2795,34 @@ INLINE void Z_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k
 }
 
 INLINE void Z_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *Z, verdict *t)
+    *Z, status_flags *t)
 {
     Z[(6 + i)*w + k] = o[0*count + at];
     t->singular[k] += o[1*count + at];
     t->total[k] += o[2*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
-    const real Z_p_x = s[9*w + k];
+    const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[10*w + k];
+    const real Z_p_y = s[19*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[11*w + k];
+    const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[12*w + k];
+    const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[13*w + k];
+    const real Z_q_y = s[22*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[14*w + k];
+    const real Z_q_z = s[23*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
@@ -3004,9 +2835,9 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_sps[6*LEGS(LEGS_OF_sps)] = {0}, o_sps[3*LEGS(LEGS_OF_sps)] = {0};
     values v;
     Z_before(m, 1, 0, X, &v, s, t);
@@ -3023,10 +2854,10 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_sps[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3049,7 +2880,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 
 /* ---- H ---- */
 INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3084,7 +2915,7 @@ INLINE void H_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k
 }
 
 INLINE void H_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -3096,9 +2927,9 @@ INLINE void H_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[7*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_sps[8*LEGS(LEGS_OF_sps)] = {0};
     clear(H, NV*NU);
     values v;
@@ -3111,9 +2942,10 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_sps[8*LANES];
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
@@ -3131,10 +2963,12 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3144,20 +2978,21 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
-    /* (W_p) centripetal tensor of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real W_p_xy = omega_x*omega_y;
-    const real omega_z = V[5*w + k];
-    const real W_p_xz = omega_x*omega_z;
-    const real W_p_yz = omega_y*omega_z;
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -3169,28 +3004,31 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
     const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
-    const real f_p_t = omega_x*omega_x;
-    const real f_p_t_2 = omega_y*omega_y;
-    const real f_p_t_3 = omega_z*omega_z;
+    const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
+        v->W_p_t_4*v->h_star_x;
+    const real f_p_y = a_t_y*m->m_star + v->B_p_yx*v->h_star_x + v->B_p_yz*v->h_star_z -
+        v->W_p_t_5*v->h_star_y;
+    const real f_p_z = a_t_z*m->m_star + v->B_p_zx*v->h_star_x + v->B_p_zy*v->h_star_y -
+        v->W_p_t_6*v->h_star_z;
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    const real mu_p_t = m->J_star_in_platform_xx*omega_in_platform_x +
+        m->J_star_in_platform_xy*omega_in_platform_y +
+        m->J_star_in_platform_xz*omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*omega_in_platform_x +
+        m->J_star_in_platform_yy*omega_in_platform_y +
+        m->J_star_in_platform_yz*omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*omega_in_platform_x +
+        m->J_star_in_platform_yz*omega_in_platform_y +
+        m->J_star_in_platform_zz*omega_in_platform_z;
+    const real alpha_x = A[3*w + k];
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
-        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
-    const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
-        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
-        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
-    /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
@@ -3198,29 +3036,29 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
         a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
+        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
         a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
+        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
         a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
     const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
         v->R_xz*mu_p_in_platform_z;
     const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
         v->R_yz*mu_p_in_platform_z;
     const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
         v->R_zz*mu_p_in_platform_z;
-    s[9*w + k] = f_p_x;
-    s[10*w + k] = f_p_y;
-    s[11*w + k] = f_p_z;
-    s[12*w + k] = mu_p_x;
-    s[13*w + k] = mu_p_y;
-    s[14*w + k] = mu_p_z;
+    s[18*w + k] = f_p_x;
+    s[19*w + k] = f_p_y;
+    s[20*w + k] = f_p_z;
+    s[21*w + k] = mu_p_x;
+    s[22*w + k] = mu_p_y;
+    s[23*w + k] = mu_p_z;
 }
 
 INLINE void required_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3229,67 +3067,17 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_sps v;
     stage_sps_X(m, w, i, j, s, X, &v);
-    stage_sps_A_X(w, j, A, &v);
-    stage_sps_V_X(w, i, j, V, &v);
-    stage_sps_A_V_X(w, j, V, &v);
-    stage_sps_legs_required(w, i, j, A, &v);
-    /* (sps-phi_4) inertia force of link 4 from its turning about its reference point */
-    const real sps_phi_4_t = v.sps_omega_2_in_axes3_x*v.sps_omega_2_in_axes3_x;
-    const real sps_phi_4_t_2 = v.sps_omega_2_in_axes3_y*v.sps_omega_2_in_axes3_y;
-    const real sps_phi_4_in_axes3_z = v.sps_B_3_in_axes3_zx*m->sps_h_4_in_spec3_y[i] -
-        m->sps_h_4_in_spec3_x[i]*(sps_phi_4_t + sps_phi_4_t_2) +
-        v.sps_B_3_in_axes3_zy*m->sps_h_4_in_spec3_z[i];
-    /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-    const real sps_mu_3_t = v.sps_omega_3_in_axes3_z*v.sps_omega_3_in_axes3_z;
-    const real sps_mu_3_in_axes3_x = v.sps_acc_4_in_axes3_z*m->sps_h_4_in_spec3_z[i] -
-        v.sps_g_in_axes3_z*m->sps_h_3_in_spec3_z[i] +
-        v.sps_g_in_axes3_y*m->sps_h_3_in_spec3_x[i] -
-        v.sps_acc_4_in_axes3_y*m->sps_h_4_in_spec3_x[i] +
-        m->sps_J_group_3_in_axes3_yz[i]*(sps_phi_4_t_2 - sps_mu_3_t) +
-        v.sps_B_3_in_axes3_yx*m->sps_J_group_3_in_axes3_xz[i] +
-        v.sps_B_3_in_axes3_zy*m->sps_Sigma_3_in_axes3_yy[i] -
-        v.sps_B_3_in_axes3_yz*m->sps_Sigma_3_in_axes3_zz[i] -
-        v.sps_B_3_in_axes3_zx*m->sps_J_group_3_in_axes3_xy[i];
-    const real sps_mu_3_in_axes3_y = v.sps_g_in_axes3_z*m->sps_h_3_in_spec3_y[i] -
-        v.sps_acc_4_in_axes3_z*m->sps_h_4_in_spec3_y[i] -
-        v.sps_g_in_axes3_x*m->sps_h_3_in_spec3_x[i] +
-        v.sps_acc_4_in_axes3_x*m->sps_h_4_in_spec3_x[i] -
-        m->sps_J_group_3_in_axes3_xz[i]*(sps_phi_4_t - sps_mu_3_t) +
-        v.sps_B_3_in_axes3_xz*m->sps_Sigma_3_in_axes3_zz[i] +
-        v.sps_B_3_in_axes3_zy*m->sps_J_group_3_in_axes3_xy[i] -
-        v.sps_B_3_in_axes3_xy*m->sps_J_group_3_in_axes3_yz[i] -
-        v.sps_B_3_in_axes3_zx*m->sps_Sigma_3_in_axes3_xx[i];
-    const real sps_mu_3_in_axes3_z = v.sps_acc_4_in_axes3_y*m->sps_h_4_in_spec3_y[i] -
-        v.sps_g_in_axes3_y*m->sps_h_3_in_spec3_y[i] +
-        v.sps_g_in_axes3_x*m->sps_h_3_in_spec3_z[i] -
-        v.sps_acc_4_in_axes3_x*m->sps_h_4_in_spec3_z[i] +
-        m->sps_J_group_3_in_axes3_xy[i]*(sps_phi_4_t - sps_phi_4_t_2) +
-        v.sps_B_3_in_axes3_xz*m->sps_J_group_3_in_axes3_yz[i] +
-        v.sps_B_3_in_axes3_yx*m->sps_Sigma_3_in_axes3_xx[i] -
-        v.sps_B_3_in_axes3_xy*m->sps_Sigma_3_in_axes3_yy[i] -
-        v.sps_B_3_in_axes3_yz*m->sps_J_group_3_in_axes3_xz[i];
-    const real sps_mu_3_in_axes2_z = v.sps_c_3*sps_mu_3_in_axes3_x -
-        sps_mu_3_in_axes3_y*v.sps_s_3;
-    /* (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight */
-    const real sps_Gamma_1 = v.sps_e_1_in_axes2_y*sps_mu_3_in_axes3_z +
-        v.sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x + v.sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y;
+    stage_sps_V_X(m, w, i, j, V, &v);
+    stage_sps_A_V_X(w, j, s, A, &v);
+    stage_sps_legs_required(m, w, i, j, A, &v);
     /* (sps-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real sps_c_in_axes3_x = m->sps_h_4_in_spec3_y[i]*(sps_mu_3_t + sps_phi_4_t_2) -
-        v.sps_B_3_in_axes3_xy*m->sps_h_4_in_spec3_z[i] -
-        v.sps_B_3_in_axes3_xz*m->sps_h_4_in_spec3_x[i] -
-        v.inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_y + sps_Gamma_1*v.sps_v_2_t);
-    const real sps_c_in_axes3_y = m->sps_h_4_in_spec3_z[i]*(sps_mu_3_t + sps_phi_4_t) -
-        v.sps_B_3_in_axes3_yx*m->sps_h_4_in_spec3_y[i] -
-        v.sps_B_3_in_axes3_yz*m->sps_h_4_in_spec3_x[i] +
-        v.inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_x -
-        sps_Gamma_1*v.sps_v_2_in_axes3_x);
-    const real sps_c_x = v.axis_x_sps_axes3_x*sps_c_in_axes3_x -
-        sps_phi_4_in_axes3_z*v.sps_w_4_x + v.axis_y_sps_axes3_x*sps_c_in_axes3_y;
-    const real sps_c_y = v.axis_x_sps_axes3_y*sps_c_in_axes3_x -
-        sps_phi_4_in_axes3_z*v.sps_w_4_y + v.axis_y_sps_axes3_y*sps_c_in_axes3_y;
-    const real sps_c_z = v.axis_x_sps_axes3_z*sps_c_in_axes3_x -
-        sps_phi_4_in_axes3_z*v.sps_w_4_z + v.axis_y_sps_axes3_z*sps_c_in_axes3_y;
+    const real sps_c_x = v.axis_x_sps_axes3_x*v.sps_c_in_axes3_x -
+        v.sps_phi_4_in_axes3_z*v.sps_w_4_x + v.axis_y_sps_axes3_x*v.sps_c_in_axes3_y;
+    const real sps_c_y = v.axis_x_sps_axes3_y*v.sps_c_in_axes3_x -
+        v.sps_phi_4_in_axes3_z*v.sps_w_4_y + v.axis_y_sps_axes3_y*v.sps_c_in_axes3_y;
+    const real sps_c_z = v.axis_x_sps_axes3_z*v.sps_c_in_axes3_x -
+        v.sps_phi_4_in_axes3_z*v.sps_w_4_z + v.axis_y_sps_axes3_z*v.sps_c_in_axes3_y;
     /* (R_a) moment that actuators and external wrench must give */
     const real sps_R_a_t = sps_c_y*v.sps_q_z - sps_c_z*v.sps_q_y;
     const real sps_R_a_t_2 = sps_c_z*v.sps_q_x - sps_c_x*v.sps_q_z;
@@ -3303,7 +3091,7 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[4*count + k], add, sps_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, sps_R_a_t_3);  /* R_a_z_of_legs */
     /* (sps-P_3) inertia and weight of the leg along the extra degree of freedom of joint 3 */
-    o[0*count + k] = sps_mu_3_in_axes3_z;
+    o[0*count + k] = v.sps_mu_3_in_axes3_z;
     /* (sps-w_4) reciprocal vector 3 */
     o[1*count + k] = v.sps_w_4_x;
     o[2*count + k] = v.sps_w_4_y;
@@ -3318,7 +3106,7 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void required_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *required, real *H, verdict *t)
+    *o, real *required, real *H, status_flags *t)
 {
     required[(6 + i)*w + k] = o[0*count + at];
     H[i*w + k] = o[1*count + at];
@@ -3334,23 +3122,23 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 {
     /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
-    const real f_p_x = s[9*w + k];
+    const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
-    const real f_p_y = s[10*w + k];
+    const real f_p_y = s[19*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
     const real R_t_z_of_legs = sums[2*w + k];
-    const real f_p_z = s[11*w + k];
+    const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
-    const real mu_p_x = s[12*w + k];
+    const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
-    const real mu_p_y = s[13*w + k];
+    const real mu_p_y = s[22*w + k];
     const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
-    const real mu_p_z = s[14*w + k];
+    const real mu_p_z = s[23*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
@@ -3363,13 +3151,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_sps[6*LEGS(LEGS_OF_sps)] = {0}, o_sps[8*LEGS(LEGS_OF_sps)] = {0};
     clear(H, NV*NU);
     values v;
-    required_before(m, 1, 0, X, &v, s, t);
+    required_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         required_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, V, A, terms_sps, o_sps);
     }
@@ -3384,14 +3172,14 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, verdict *restrict t)
+    real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_sps[8*LANES];
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s, t);
+        required_before(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3410,7 +3198,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 
 /* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, verdict *t)
+    *v, real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3430,13 +3218,11 @@ INLINE void inverse_kinematics_legs_sps(const prepared *m, size_t w, size_t i, s
 {
     static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
     values_sps v;
-    stage_sps_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    stage_sps_X(m, w, i, j, s, X, &v);
     /* (sps-q_1) displacement of joint 1 */
-    const real sps_q_1 = angle(v.inv_sps_root_1*v.sps_S_in_turn1_y,
-        v.inv_sps_root_1*v.sps_S_in_turn1_x);
+    const real sps_q_1 = angle(v.sps_s_1, v.sps_c_1);
     /* (sps-q_2) displacement of joint 2 */
-    const real sps_q_2 = angle(-v.inv_sps_root_2*v.sps_S_in_turn1_z,
-        v.inv_sps_root_2*v.sps_root_1);
+    const real sps_q_2 = angle(-v.sps_e_1_in_axes2_y, v.sps_c_2);
     /* (sps-q_1) */
     o[0*count + k] = sps_q_1;
     /* (sps-q_2) */
@@ -3452,7 +3238,7 @@ INLINE void inverse_kinematics_legs_sps(const prepared *m, size_t w, size_t i, s
 }
 
 INLINE void inverse_kinematics_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[4*i*w + k] = o[0*count + at];
     q[(1 + 4*i)*w + k] = o[1*count + at];
@@ -3462,9 +3248,9 @@ INLINE void inverse_kinematics_place_sps(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[5*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
     values v;
     inverse_kinematics_before(m, 1, 0, X, &v, s, t);
@@ -3477,9 +3263,9 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_sps[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3497,7 +3283,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 
 /* ---- joint_rates ---- */
 INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, verdict *t)
+    real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3518,65 +3304,24 @@ INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t i, size_t j
     static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     values_sps v;
     stage_sps_X(m, w, i, j, s, X, &v);
-    /* (sps-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real sps_S_dot_x = t_dot_x + omega_y*v.sps_q_z - omega_z*v.sps_q_y;
-    const real omega_x = V[3*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real sps_S_dot_y = t_dot_y + omega_z*v.sps_q_x - omega_x*v.sps_q_z;
-    const real t_dot_z = V[2*w + j];
-    const real sps_S_dot_z = t_dot_z + omega_x*v.sps_q_y - omega_y*v.sps_q_x;
-    /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-    const real sps_v_1_in_axes3_y = -v.sps_c_2*v.sps_root_2*v.sps_s_3;
-    /* (sps-w_1) reciprocal vector 1 */
-    const real sps_w_1_t = v.sps_v_1_in_axes3_x*v.sps_v_2_t +
-        sps_v_1_in_axes3_y*v.sps_v_2_in_axes3_x;
-    /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-    const real sps_S_dot_rest_t = v.inv_sps_root_2*v.sps_S_in_turn1_z*v.sps_c_3;
-    const real sps_S_dot_rest_t_2 = v.sps_s_1*v.sps_s_3 - sps_S_dot_rest_t*v.sps_c_1;
-    const real sps_S_dot_rest_t_3 = -v.sps_c_1*v.sps_s_3 - sps_S_dot_rest_t*v.sps_s_1;
-    const real axis_y_sps_axes3_x = m->sps_base_frame_xz[i]*v.sps_e_1_in_axes3_y +
-        sps_S_dot_rest_t_2*m->sps_base_frame_xx[i] +
-        sps_S_dot_rest_t_3*m->sps_base_frame_xy[i];
-    const real axis_y_sps_axes3_y = m->sps_base_frame_yz[i]*v.sps_e_1_in_axes3_y +
-        sps_S_dot_rest_t_2*m->sps_base_frame_yx[i] +
-        sps_S_dot_rest_t_3*m->sps_base_frame_yy[i];
-    const real axis_y_sps_axes3_z = m->sps_base_frame_zz[i]*v.sps_e_1_in_axes3_y +
-        sps_S_dot_rest_t_2*m->sps_base_frame_zx[i] +
-        sps_S_dot_rest_t_3*m->sps_base_frame_zy[i];
-    const real sps_S_dot_rest_in_axes3_x = sps_S_dot_x*(axis_y_sps_axes3_y*v.sps_w_4_z -
-        axis_y_sps_axes3_z*v.sps_w_4_y) + sps_S_dot_y*(axis_y_sps_axes3_z*v.sps_w_4_x -
-        axis_y_sps_axes3_x*v.sps_w_4_z) + sps_S_dot_z*(axis_y_sps_axes3_x*v.sps_w_4_y -
-        axis_y_sps_axes3_y*v.sps_w_4_x);
-    const real sps_S_dot_rest_in_axes3_y = axis_y_sps_axes3_x*sps_S_dot_x +
-        axis_y_sps_axes3_y*sps_S_dot_y + axis_y_sps_axes3_z*sps_S_dot_z;
-    const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*v.sps_w_4_x + sps_S_dot_y*v.sps_w_4_y +
-        sps_S_dot_z*v.sps_w_4_z;
+    stage_sps_V_X(m, w, i, j, V, &v);
     /* (sps-qd_1) rate of joint 1 */
-    const real inv_sps_w_1_t = 1/sps_w_1_t;
-    const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*v.sps_v_2_in_axes3_x +
-        sps_S_dot_rest_in_axes3_x*v.sps_v_2_t);
+    o[0*count + k] = v.sps_qd_1;
     /* (sps-qd_2) rate of joint 2 */
-    const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*v.sps_v_1_in_axes3_x -
-        sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
-    /* (sps-qd_1) */
-    o[0*count + k] = sps_qd_1;
-    /* (sps-qd_2) */
-    o[1*count + k] = -sps_qd_2_t;
+    o[1*count + k] = -v.sps_qd_2_t;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
     o[2*count + k] = sps_yd_3;
     /* (sps-qd_4) rate of joint 4 */
-    o[3*count + k] = sps_S_dot_rest_in_axes3_z;
-    o[5*count + k] = (sps_qd_1 + sps_qd_2_t) + (sps_yd_3 + sps_S_dot_rest_in_axes3_z);
+    o[3*count + k] = v.sps_S_dot_rest_in_axes3_z;
+    o[5*count + k] = (v.sps_qd_1 + v.sps_qd_2_t) + (sps_yd_3 + v.sps_S_dot_rest_in_axes3_z);
     o[4*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
+        UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
+        LEAST_2);
 }
 
 INLINE void joint_rates_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[4*i*w + k] = o[0*count + at];
     qd[(1 + 4*i)*w + k] = o[1*count + at];
@@ -3586,9 +3331,10 @@ INLINE void joint_rates_place_sps(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[5*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
     values v;
     joint_rates_before(m, 1, 0, X, &v, s, t);
@@ -3601,9 +3347,9 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_sps[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3620,10 +3366,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
+    real *V, const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3633,88 +3381,45 @@ INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, co
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     static const size_t place_sps_ydd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     values_sps v;
     stage_sps_X(m, w, i, j, s, X, &v);
-    stage_sps_A_X(w, j, A, &v);
-    stage_sps_V_X(w, i, j, V, &v);
-    stage_sps_A_V_X(w, j, V, &v);
-    /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-    const real sps_v_1_in_axes3_y = -v.sps_c_2*v.sps_root_2*v.sps_s_3;
-    /* (sps-w_1) reciprocal vector 1 */
-    const real sps_w_1_t = v.sps_v_1_in_axes3_x*v.sps_v_2_t +
-        sps_v_1_in_axes3_y*v.sps_v_2_in_axes3_x;
-    /* (sps-qd_1) rate of joint 1 */
-    const real inv_sps_w_1_t = 1/sps_w_1_t;
-    const real sps_qd_1 = inv_sps_w_1_t*(v.sps_S_dot_rest_in_axes3_y*v.sps_v_2_in_axes3_x +
-        v.sps_S_dot_rest_in_axes3_x*v.sps_v_2_t);
-    /* (sps-qd_2) rate of joint 2 */
-    const real sps_qd_2_t = inv_sps_w_1_t*(v.sps_S_dot_rest_in_axes3_y*v.sps_v_1_in_axes3_x -
-        v.sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
-    /* (sps-omega_1) angular velocity of link 1 */
-    const real sps_omega_1_in_axes2_x = v.sps_c_2*sps_qd_1;
-    const real sps_omega_1_in_axes2_y = v.sps_e_1_in_axes2_y*sps_qd_1;
-    /* (sps-omega_2) angular velocity of link 2 */
-    const real sps_omega_2_in_axes3_x = sps_omega_1_in_axes2_x*v.sps_s_3 -
-        v.sps_c_3*sps_qd_2_t;
-    const real sps_omega_2_in_axes3_y = sps_qd_2_t*v.sps_s_3 +
-        v.sps_c_3*sps_omega_1_in_axes2_x;
-    /* (sps-omega_3) angular velocity of link 3 */
-    const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
-    const real sps_omega_3_in_axes3_z = sps_yd_3 + sps_omega_1_in_axes2_y;
-    /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    const real sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t;
-    /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real sps_beta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3 -
-        v.sps_s_3*sps_zeta_2_t;
-    const real sps_beta_3_in_axes3_y = -v.sps_c_3*sps_zeta_2_t -
-        sps_omega_2_in_axes3_x*sps_yd_3;
-    /* (sps-bias) acceleration of the connection point at zero joint accelerations */
-    const real sps_bias_in_axes3_x = v.sps_bias_t*sps_omega_2_in_axes3_y +
-        v.sps_root_2*(sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z + sps_beta_3_in_axes3_y);
-    const real sps_bias_in_axes3_y =
-        v.sps_root_2*(sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z - sps_beta_3_in_axes3_x) -
-        v.sps_bias_t*sps_omega_2_in_axes3_x;
+    stage_sps_V_X(m, w, i, j, V, &v);
+    stage_sps_A_V_X(w, j, s, A, &v);
     /* (sps-rel) acceleration of the connection point left to the joint accelerations */
-    const real sps_rel_in_axes3_x = v.axis_x_sps_axes3_x*v.sps_S_ddot_x +
-        v.axis_x_sps_axes3_y*v.sps_S_ddot_y + v.axis_x_sps_axes3_z*v.sps_S_ddot_z -
-        sps_bias_in_axes3_x;
-    const real sps_rel_in_axes3_y = v.axis_y_sps_axes3_x*v.sps_S_ddot_x +
-        v.axis_y_sps_axes3_y*v.sps_S_ddot_y + v.axis_y_sps_axes3_z*v.sps_S_ddot_z -
-        sps_bias_in_axes3_y;
-    const real sps_rel_in_axes3_z = v.sps_S_ddot_x*v.sps_w_4_x + v.sps_S_ddot_y*v.sps_w_4_y +
-        v.sps_S_ddot_z*v.sps_w_4_z +
-        v.sps_root_2*(sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x +
-        sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y);
+    const real sps_rel_in_axes3_z = v.sps_S_ddot_in_axes3_z + v.sps_W_3_t_3*v.sps_root_2;
     /* (sps-qdd_1) acceleration of joint 1 */
-    const real sps_qdd_1 = inv_sps_w_1_t*(sps_rel_in_axes3_x*v.sps_v_2_t +
-        sps_rel_in_axes3_y*v.sps_v_2_in_axes3_x);
+    o[0*count + k] = v.sps_qdd_1;
     /* (sps-qdd_2) acceleration of joint 2 */
-    const real sps_qdd_2_t = inv_sps_w_1_t*(sps_rel_in_axes3_y*v.sps_v_1_in_axes3_x -
-        sps_rel_in_axes3_x*sps_v_1_in_axes3_y);
-    /* (sps-qdd_1) */
-    o[0*count + k] = sps_qdd_1;
-    /* (sps-qdd_2) */
-    o[1*count + k] = -sps_qdd_2_t;
+    o[1*count + k] = -v.sps_qdd_2_t;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real sps_ydd_3 = A[place_sps_ydd_3[i]*w + j];
     o[2*count + k] = sps_ydd_3;
     /* (sps-qdd_4) acceleration of joint 4 */
     o[3*count + k] = sps_rel_in_axes3_z;
-    o[5*count + k] = (sps_qdd_1 + sps_qdd_2_t) + (sps_ydd_3 + sps_rel_in_axes3_z);
+    o[5*count + k] = (v.sps_qdd_1 + v.sps_qdd_2_t) + (sps_ydd_3 + sps_rel_in_axes3_z);
     o[4*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
+        UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
+        LEAST_2);
 }
 
 INLINE void joint_accelerations_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[4*i*w + k] = o[0*count + at];
     qdd[(1 + 4*i)*w + k] = o[1*count + at];
@@ -3725,12 +3430,12 @@ INLINE void joint_accelerations_place_sps(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s, t);
+    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         joint_accelerations_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, V, A, o_sps);
     }
@@ -3740,13 +3445,13 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_sps[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s, t);
+        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3759,10 +3464,12 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
+    real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3772,6 +3479,15 @@ INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, va
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -3780,66 +3496,20 @@ INLINE void legs_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_
 {
     values_sps v;
     stage_sps_X(m, w, i, j, s, X, &v);
-    stage_sps_A_X(w, j, A, &v);
-    stage_sps_V_X(w, i, j, V, &v);
-    stage_sps_A_V_X(w, j, V, &v);
-    stage_sps_legs_required(w, i, j, A, &v);
-    /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-    const real sps_mu_3_t = v.sps_omega_2_in_axes3_x*v.sps_omega_2_in_axes3_x;
-    const real sps_mu_3_t_2 = v.sps_omega_2_in_axes3_y*v.sps_omega_2_in_axes3_y;
-    const real sps_mu_3_t_3 = v.sps_omega_3_in_axes3_z*v.sps_omega_3_in_axes3_z;
-    const real sps_mu_3_in_axes3_x = v.sps_acc_4_in_axes3_z*m->sps_h_4_in_spec3_z[i] -
-        v.sps_g_in_axes3_z*m->sps_h_3_in_spec3_z[i] +
-        v.sps_g_in_axes3_y*m->sps_h_3_in_spec3_x[i] -
-        v.sps_acc_4_in_axes3_y*m->sps_h_4_in_spec3_x[i] +
-        m->sps_J_group_3_in_axes3_yz[i]*(sps_mu_3_t_2 - sps_mu_3_t_3) +
-        v.sps_B_3_in_axes3_yx*m->sps_J_group_3_in_axes3_xz[i] +
-        v.sps_B_3_in_axes3_zy*m->sps_Sigma_3_in_axes3_yy[i] -
-        v.sps_B_3_in_axes3_yz*m->sps_Sigma_3_in_axes3_zz[i] -
-        v.sps_B_3_in_axes3_zx*m->sps_J_group_3_in_axes3_xy[i];
-    const real sps_mu_3_in_axes3_y = v.sps_g_in_axes3_z*m->sps_h_3_in_spec3_y[i] -
-        v.sps_acc_4_in_axes3_z*m->sps_h_4_in_spec3_y[i] -
-        v.sps_g_in_axes3_x*m->sps_h_3_in_spec3_x[i] +
-        v.sps_acc_4_in_axes3_x*m->sps_h_4_in_spec3_x[i] -
-        m->sps_J_group_3_in_axes3_xz[i]*(sps_mu_3_t - sps_mu_3_t_3) +
-        v.sps_B_3_in_axes3_xz*m->sps_Sigma_3_in_axes3_zz[i] +
-        v.sps_B_3_in_axes3_zy*m->sps_J_group_3_in_axes3_xy[i] -
-        v.sps_B_3_in_axes3_xy*m->sps_J_group_3_in_axes3_yz[i] -
-        v.sps_B_3_in_axes3_zx*m->sps_Sigma_3_in_axes3_xx[i];
-    const real sps_mu_3_in_axes3_z = v.sps_acc_4_in_axes3_y*m->sps_h_4_in_spec3_y[i] -
-        v.sps_g_in_axes3_y*m->sps_h_3_in_spec3_y[i] +
-        v.sps_g_in_axes3_x*m->sps_h_3_in_spec3_z[i] -
-        v.sps_acc_4_in_axes3_x*m->sps_h_4_in_spec3_z[i] +
-        m->sps_J_group_3_in_axes3_xy[i]*(sps_mu_3_t - sps_mu_3_t_2) +
-        v.sps_B_3_in_axes3_xz*m->sps_J_group_3_in_axes3_yz[i] +
-        v.sps_B_3_in_axes3_yx*m->sps_Sigma_3_in_axes3_xx[i] -
-        v.sps_B_3_in_axes3_xy*m->sps_Sigma_3_in_axes3_yy[i] -
-        v.sps_B_3_in_axes3_yz*m->sps_J_group_3_in_axes3_xz[i];
-    const real sps_mu_3_in_axes2_z = v.sps_c_3*sps_mu_3_in_axes3_x -
-        sps_mu_3_in_axes3_y*v.sps_s_3;
-    /* (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight */
-    const real sps_Gamma_1 = v.sps_e_1_in_axes2_y*sps_mu_3_in_axes3_z +
-        v.sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x + v.sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y;
-    /* (sps-c) leg force on the platform without actuation and without the mass at the connection
-       point */
-    const real sps_c_in_axes3_x = m->sps_h_4_in_spec3_y[i]*(sps_mu_3_t_2 + sps_mu_3_t_3) -
-        v.sps_B_3_in_axes3_xy*m->sps_h_4_in_spec3_z[i] -
-        v.sps_B_3_in_axes3_xz*m->sps_h_4_in_spec3_x[i] -
-        v.inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_y + sps_Gamma_1*v.sps_v_2_t);
-    const real sps_c_in_axes3_y = m->sps_h_4_in_spec3_z[i]*(sps_mu_3_t + sps_mu_3_t_3) -
-        v.sps_B_3_in_axes3_yx*m->sps_h_4_in_spec3_y[i] -
-        v.sps_B_3_in_axes3_yz*m->sps_h_4_in_spec3_x[i] +
-        v.inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_x -
-        sps_Gamma_1*v.sps_v_2_in_axes3_x);
+    stage_sps_V_X(m, w, i, j, V, &v);
+    stage_sps_A_V_X(w, j, s, A, &v);
+    stage_sps_legs_required(m, w, i, j, A, &v);
+    /* (sps-acc_4) acceleration of the reference point of link 4, less gravity */
+    const real sps_acc_4_in_axes3_x = v.sps_S_ddot_in_axes3_x - v.sps_g_in_axes3_x;
+    const real sps_acc_4_in_axes3_y = v.sps_S_ddot_in_axes3_y - v.sps_g_in_axes3_y;
+    const real sps_acc_4_in_axes3_z = v.sps_S_ddot_in_axes3_z - v.sps_g_in_axes3_z;
     /* (sps-c_true) leg force on the platform without actuation, the last link's mass included */
-    const real sps_c_true_in_axes3_x = sps_c_in_axes3_x -
-        v.sps_acc_4_in_axes3_x*m->sps_link4_mass[i];
-    const real sps_c_true_in_axes3_y = sps_c_in_axes3_y -
-        v.sps_acc_4_in_axes3_y*m->sps_link4_mass[i];
-    const real sps_c_true_in_axes3_z = m->sps_h_4_in_spec3_x[i]*(sps_mu_3_t + sps_mu_3_t_2) -
-        v.sps_acc_4_in_axes3_z*m->sps_link4_mass[i] -
-        v.sps_B_3_in_axes3_zx*m->sps_h_4_in_spec3_y[i] -
-        v.sps_B_3_in_axes3_zy*m->sps_h_4_in_spec3_z[i];
+    const real sps_c_true_in_axes3_x = v.sps_c_in_axes3_x -
+        sps_acc_4_in_axes3_x*m->sps_link4_mass[i];
+    const real sps_c_true_in_axes3_y = v.sps_c_in_axes3_y -
+        sps_acc_4_in_axes3_y*m->sps_link4_mass[i];
+    const real sps_c_true_in_axes3_z = -sps_acc_4_in_axes3_z*m->sps_link4_mass[i] -
+        v.sps_phi_4_in_axes3_z;
     const real sps_c_true_x = sps_c_true_in_axes3_z*v.sps_w_4_x +
         v.axis_x_sps_axes3_x*sps_c_true_in_axes3_x +
         v.axis_y_sps_axes3_x*sps_c_true_in_axes3_y;
@@ -3863,7 +3533,7 @@ INLINE void legs_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[3*i*w + k] = o[0*count + at];
     leg_force[(3*i + 1)*w + k] = o[1*count + at];
@@ -3875,12 +3545,12 @@ INLINE void legs_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_sps[7*LEGS(LEGS_OF_sps)] = {0};
     values v;
-    legs_before(m, 1, 0, X, &v, s, t);
+    legs_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         legs_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, V, A, o_sps);
     }
@@ -3891,7 +3561,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 
 /* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3913,13 +3583,10 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
-        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
-        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
-        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
-        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
-        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
-    s[9*w + k] = potential_t;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->h_star_x) +
+        m->gravity_y*(m->m_star*t_y + v->h_star_y) + m->gravity_z*(m->m_star*t_z +
+        v->h_star_z);
+    s[18*w + k] = potential_t;
 }
 
 INLINE void potential_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3927,31 +3594,23 @@ INLINE void potential_legs_sps(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_sps v;
     stage_sps_X(m, w, i, j, s, X, &v);
-    stage_sps_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-    /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real sps_c_1 = v.inv_sps_root_1*v.sps_S_in_turn1_x;
-    /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-    const real sps_s_1 = v.inv_sps_root_1*v.sps_S_in_turn1_y;
-    /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real sps_c_2 = v.inv_sps_root_2*v.sps_root_1;
     /* (potential) */
-    const real sps_e_1_in_axes2_y = v.inv_sps_root_2*v.sps_S_in_turn1_z;
-    const real sps_potential_t_7 = sps_c_1*m->sps_potential_t[i] +
-        m->sps_potential_t_2[i]*sps_s_1;
-    const real sps_potential_t_8 = sps_c_1*m->sps_potential_t_2[i] -
-        m->sps_potential_t[i]*sps_s_1;
-    const real sps_potential_t_9 = sps_c_2*m->sps_potential_t_3[i] -
-        sps_e_1_in_axes2_y*sps_potential_t_7;
-    const real sps_potential_t_10 = sps_c_1*m->sps_potential_t_4[i] +
-        m->sps_potential_t_5[i]*sps_s_1;
-    const real sps_potential_t_11 = sps_c_1*m->sps_potential_t_5[i] -
-        m->sps_potential_t_4[i]*sps_s_1;
-    const real sps_potential_t_12 = sps_c_2*m->sps_potential_t_6[i] -
-        sps_e_1_in_axes2_y*sps_potential_t_10;
-    const real sps_potential_t_13 = (sps_c_2*sps_potential_t_7 +
-        sps_e_1_in_axes2_y*m->sps_potential_t_3[i])*(m->sps_h_3_in_spec3_x[i] +
-        m->sps_h_4_in_spec3_x[i] + m->sps_link3_mass[i]*(sps_c_2*sps_potential_t_10 +
-        sps_e_1_in_axes2_y*m->sps_potential_t_6[i])) + (v.sps_c_3*sps_potential_t_8 +
+    const real sps_potential_t_7 = v.sps_c_1*m->sps_potential_t[i] +
+        m->sps_potential_t_2[i]*v.sps_s_1;
+    const real sps_potential_t_8 = v.sps_c_1*m->sps_potential_t_2[i] -
+        m->sps_potential_t[i]*v.sps_s_1;
+    const real sps_potential_t_9 = v.sps_c_2*m->sps_potential_t_3[i] -
+        v.sps_e_1_in_axes2_y*sps_potential_t_7;
+    const real sps_potential_t_10 = v.sps_c_1*m->sps_potential_t_4[i] +
+        m->sps_potential_t_5[i]*v.sps_s_1;
+    const real sps_potential_t_11 = v.sps_c_1*m->sps_potential_t_5[i] -
+        m->sps_potential_t_4[i]*v.sps_s_1;
+    const real sps_potential_t_12 = v.sps_c_2*m->sps_potential_t_6[i] -
+        v.sps_e_1_in_axes2_y*sps_potential_t_10;
+    const real sps_potential_t_13 = (v.sps_c_2*sps_potential_t_7 +
+        v.sps_e_1_in_axes2_y*m->sps_potential_t_3[i])*(m->sps_h_3_in_spec3_x[i] +
+        m->sps_h_4_in_spec3_x[i] + m->sps_link3_mass[i]*(v.sps_c_2*sps_potential_t_10 +
+        v.sps_e_1_in_axes2_y*m->sps_potential_t_6[i])) + (v.sps_c_3*sps_potential_t_8 +
         sps_potential_t_9*v.sps_s_3)*(m->sps_h_3_in_spec3_y[i] + m->sps_h_4_in_spec3_y[i] +
         m->sps_link3_mass[i]*(v.sps_c_3*sps_potential_t_11 + sps_potential_t_12*v.sps_s_3)) +
         (v.sps_c_3*sps_potential_t_9 - sps_potential_t_8*v.sps_s_3)*(m->sps_h_3_in_spec3_z[i]
@@ -3963,7 +3622,7 @@ INLINE void potential_legs_sps(const prepared *m, size_t w, size_t i, size_t j, 
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1);
 }
 
-INLINE void potential_place_sps(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_sps(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -3972,15 +3631,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 {
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
-    const real potential_t = s[9*w + k];
+    const real potential_t = s[18*w + k];
     const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[10] = {0}, sums[1] = {0};
+    real s[19] = {0}, sums[1] = {0};
     real terms_sps[LEGS(LEGS_OF_sps)] = {0}, o_sps[LEGS(LEGS_OF_sps)] = {0};
     values v;
     potential_before(m, 1, 0, X, &v, s, t);
@@ -3999,7 +3658,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4022,16 +3681,11 @@ INLINE void condition_legs_sps(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_sps v;
     stage_sps_X(m, w, i, j, s, X, &v);
-    /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real sps_c_2 = v.inv_sps_root_2*m->sps_branch_1[i]*root(v.sps_root_1_t);
-    /* (sps-w_1) reciprocal vector 1 */
-    const real sps_w_1_t = sps_c_2*v.sps_c_3*v.sps_c_3*v.sps_root_2*v.sps_root_2 +
-        sps_c_2*v.sps_root_2*v.sps_root_2*v.sps_s_3*v.sps_s_3;
     /* (sps-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real sps_pivot_size = magnitude(v.sps_root_1_t);
     const real sps_pivot_size_2 = magnitude(v.sps_root_2_t);
-    const real sps_pivot_size_3 = magnitude(sps_w_1_t);
+    const real sps_pivot_size_3 = magnitude(v.sps_w_1_t);
     const real sps_least_pivots = lesser(lesser(R(1.25)*root(sps_pivot_size),
         R(1.25)*root(sps_pivot_size_2)), R(1.5624999999999998)*sps_pivot_size_3);
     /* (spread) rms distance of the platform points from their centroid */
@@ -4055,11 +3709,12 @@ INLINE void condition_legs_sps(const prepared *m, size_t w, size_t i, size_t j, 
     o[8*count + k] = (v.sps_w_4_x + (v.sps_w_4_y + v.sps_w_4_z)) + ((v.sps_H_a_4_x +
         v.sps_H_a_4_y) + (v.sps_H_a_4_z + sps_least_pivots));
     o[7*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
+        UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
+        LEAST_2);
 }
 
 INLINE void condition_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *pivots, verdict *t)
+    *o, real *H, real *pivots, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -4073,7 +3728,7 @@ INLINE void condition_place_sps(size_t w, size_t i, size_t k, size_t at, size_t 
 }
 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
-    *lengths, verdict *t)
+    *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_sps = sums[0*w + k];
@@ -4084,9 +3739,9 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
-    real s[9] = {0}, sums[1] = {0};
+    real s[18] = {0}, sums[1] = {0};
     real terms_sps[LEGS(LEGS_OF_sps)] = {0}, o_sps[9*LEGS(LEGS_OF_sps)] = {0};
     clear(H, NV*NU);
     clear(reach, NL);
@@ -4109,182 +3764,165 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 int stewart_sps_M(const prepared *m, const real *X, real *M_out)
 {
     real M[NV*NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M, why.overflow);
     }
     copy(NV*NV, M, M_out);
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int stewart_sps_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     real Z[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z, why.overflow);
     }
     copy(NV, Z, Z_out);
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int stewart_sps_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int stewart_sps_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     real q[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q, why.overflow);
     }
     copy(NJ, q, q_out);
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int stewart_sps_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd, why.overflow);
     }
     copy(NJ, qd, qd_out);
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int stewart_sps_joint_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
     real qdd[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd, why.overflow);
     }
     copy(NJ, qdd, qdd_out);
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int stewart_sps_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M, why.overflow);
@@ -4294,24 +3932,24 @@ int stewart_sps_dynamics(const prepared *m, const real *X, const real *V, real *
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -4493,14 +4131,9 @@ int stewart_sps_inverse_dynamics(const prepared *m, const real *X, const real *V
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0}, unsure_tau[1] =
         {0}, work[NU*PADDED(NU)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 12; ++i) {
@@ -4509,18 +4142,16 @@ int stewart_sps_inverse_dynamics(const prepared *m, const real *X, const real *V
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - extend_1[i];
     }
-    const real *const take_1 = H;
-    const real *const subtract_1_from_0 = subtract_1;
-    eliminate_6(1, NU, order_tau, sizes_tau, take_1, subtract_1_from_0, tau_out, unsure_tau, why.total);
+    eliminate_6(1, NU, order_tau, sizes_tau, H, subtract_1, tau_out, unsure_tau, why.total);
     if (unsure_tau[0] > 0) {
-        set_matrix(NU, 1, take_1, work);
-        solve_apart(NU, subtract_1_from_0, work, tau_out, why.singular);
+        set_matrix(NU, 1, H, work);
+        solve_apart(NU, subtract_1, work, tau_out, why.singular);
         check(NU, 1, tau_out, why.overflow);
     }
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    return settled(&why, NU, tau_out);
+    return final_status(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4528,7 +4159,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], extend_1[12*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4541,11 +4172,9 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - extend_1[i];
     }
-    const real *const take_1 = H;
-    const real *const subtract_1_from_0 = subtract_1;
-    eliminate_6(LANES, NU, order_tau, sizes_tau, take_1, subtract_1_from_0, tau, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
+    eliminate_6(LANES, NU, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
 }
 
 int stewart_sps_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
@@ -4554,14 +4183,9 @@ int stewart_sps_forward_dynamics(const prepared *m, const real *X, const real *V
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[12] = {0}, add_1[NV]
         = {0}, subtract_1[NV] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -4577,7 +4201,7 @@ int stewart_sps_forward_dynamics(const prepared *m, const real *X, const real *V
     set_matrix(NV, 1, M, work);
     solve_state(NV, subtract_1, work, A_out, why.singular);
     check(NV, 1, A_out, why.overflow);
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4586,7 +4210,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, extend_1[12*LANES], add_1[NV*LANES],
         subtract_1[NV*LANES], A[NV*LANES], work[NV*PADDED(NV)*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4606,8 +4230,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     set_matrix(NV, LANES, M, work);
     solve(NV, LANES, subtract_1, work, A, why.singular);
     add_up(NV, A, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 static const size_t order_solve_1[] = {0, 1, 2, 3, 4, 5};
@@ -4625,14 +4249,9 @@ int stewart_sps_complete_acceleration(const prepared *m, const real *X, const re
         add_1[NV] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0}, take_columns_1[6*NV] = {0},
         negative_1[6] = {0}, solve_1[6] = {0}, unsure_solve_1[1] = {0}, completed[NV] = {0},
         work[6*PADDED(6)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         clear_at_1[i] = A[i];
@@ -4668,7 +4287,7 @@ int stewart_sps_complete_acceleration(const prepared *m, const real *X, const re
     check(NV, 1, completed, why.overflow);
     check(NV*NU, 1, H, why.overflow);
     copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return final_status(&why, NV, completed_out);
 }
 
 INLINE void complete_acceleration_lanes(const prepared *m, const real *X, const real *V, const
@@ -4681,7 +4300,7 @@ INLINE void complete_acceleration_lanes(const prepared *m, const real *X, const 
         M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
         extend_1[12*LANES], subtract_1[NV*LANES], take_columns_1[6*NV*LANES] = {0},
         negative_1[6*LANES], solve_1[6*LANES], completed[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4715,8 +4334,8 @@ INLINE void complete_acceleration_lanes(const prepared *m, const real *X, const 
     add_at(6, LANES, places_completed, solve_1, completed);
     add_up(NV, completed, why.total);
     add_up(NV*NU, H, why.total);
-    suspect(&why, code);
-    deliver(NV, completed, completed_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, completed, completed_out);
 }
 
 int stewart_sps_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -4724,54 +4343,27 @@ int stewart_sps_leg_reactions(const prepared *m, const real *X, const real *V, c
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real required[NV] = {0}, H[NV*NU] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0}, solve_1[NU] =
-        {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0},
-        work[NU*PADDED(NU)];
-    verdict why;
+    real solve_1[NU] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, &why);
-    for (size_t i = 0; i < 12; ++i) {
-        extend_1[i] = i < NW ? wrench[i] : 0;
-    }
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - extend_1[i];
-    }
-    const real *const take_1 = H;
-    const real *const subtract_1_from_0 = subtract_1;
-    eliminate_6(1, NU, order_tau, sizes_tau, take_1, subtract_1_from_0, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NU, 1, take_1, work);
-        solve_apart(NU, subtract_1_from_0, work, solve_1, why.singular);
-        check(NU, 1, solve_1, why.overflow);
-    }
+    flag_status(stewart_sps_inverse_dynamics(m, X, V, A, wrench, solve_1), &why);
     legs_run(m, X, V, A, leg_force, actuator, &why);
     for (size_t i = 0; i < 3*NL; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
-    check(3*NL, 1, forces, why.overflow);
-    copy(3*NL, forces, forces_out);
-    return settled(&why, 3*NL, forces_out);
+    return finished(3*NL, forces, forces_out, &why);
 }
 
 int stewart_sps_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -4780,8 +4372,8 @@ int stewart_sps_energy(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int stewart_sps_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -4791,9 +4383,9 @@ int stewart_sps_condition(const prepared *m, const real *X, real *sigma_out, rea
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6, 7, 8, 9, 10, 11};
     real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
         divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -4813,8 +4405,8 @@ int stewart_sps_condition(const prepared *m, const real *X, real *sigma_out, rea
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NU, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NU, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int stewart_sps_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4824,13 +4416,12 @@ int stewart_sps_manipulability(const prepared *m, const real *X, real *measure_o
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NU] = {0}, measure[1]
         = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4848,8 +4439,8 @@ int stewart_sps_manipulability(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int stewart_sps_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -4859,13 +4450,12 @@ int stewart_sps_singularity_distance(const prepared *m, const real *X, real *act
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NU] = {0}, spread_1[1]
         = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4883,52 +4473,47 @@ int stewart_sps_singularity_distance(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_3[6] = {0}, gap[NU] = {0};
-    verdict why;
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_3[6] = {0}, residual[NU] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(6, 1, stewart_sps_ACTUATED, q, q_of_inverse_kinematics_from_3);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_3[i];
+        residual[i] = q_actuated[i] - q_of_inverse_kinematics_from_3[i];
     }
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -4940,21 +4525,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -4968,17 +4553,11 @@ int stewart_sps_forward_kinematics(const prepared *m, const real *q_actuated, co
     *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int stewart_sps_dissipation(const prepared *m, const real *X, const real *V, real
@@ -4987,33 +4566,25 @@ int stewart_sps_dissipation(const prepared *m, const real *X, const real *V, rea
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int stewart_sps_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int stewart_sps_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5021,289 +4592,204 @@ int stewart_sps_joint_margins(const prepared *m, const real *X, real *margins_ou
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17, 18, 19, 20, 21, 22, 23};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int stewart_sps_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int stewart_sps_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, stewart_sps_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int stewart_sps_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, stewart_sps_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int stewart_sps_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, stewart_sps_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int stewart_sps_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int stewart_sps_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
-    check(9, 1, R, why.overflow);
-    copy(9, R, R_out);
-    return settled(&why, 9, R_out);
+    return finished(9, R, R_out, &why);
 }
 
 int stewart_sps_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0}, X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(R, 9);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(9, 1, R, why.invalid);
-    }
+    check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
     for (size_t i = 0; i < NQ; ++i) {
         X[i] = i < 7 ? join_1[i] : 0;
     }
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int stewart_sps_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, join_1[7] = {0}, X_dot[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const V_from_3 = V + 3;
     const real *const X_from_3 = X + 3;
     quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
-    const real *const V_from_0 = V;
-    beside(1, 3, 4, V_from_0, quaternion_rate_1, join_1);
+    beside(1, 3, 4, V, quaternion_rate_1, join_1);
     const real *const V_from_6 = V + 6;
     beside(1, 7, 6, join_1, V_from_6, X_dot);
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int stewart_sps_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0}, X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(rpy, 3);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(3, 1, rpy, why.invalid);
-    }
+    check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
     for (size_t i = 0; i < NQ; ++i) {
         X[i] = i < 7 ? join_1[i] : 0;
     }
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int stewart_sps_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, add_2[6] = {0}, join_1[7] = {0}, X_moved[NQ] =
         {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
-    const real *const X_from_0 = X;
+    check_two(NQ, X, NV, step, why.invalid);
     const real *const X_from_3 = X + 3;
     const real *const X_from_7 = X + 7;
-    const real *const step_from_0 = step;
     const real *const step_from_3 = step + 3;
     const real *const step_from_6 = step + 6;
     turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X_from_0[i] + step_from_0[i];
+        add_1[i] = X[i] + step[i];
     }
     for (size_t i = 0; i < 6; ++i) {
         add_2[i] = X_from_7[i] + step_from_6[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, join_1);
     beside(1, 7, 6, join_1, add_2, X_moved);
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int stewart_sps_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, subtract_2[6] = {0}, join_1[6] = {0}, step[NV]
         = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
+    check_two(NQ, X0, NQ, X1, why.invalid);
     const real *const X0_from_3 = X0 + 3;
     const real *const X0_from_7 = X0 + 7;
-    const real *const X1_from_0 = X1;
     const real *const X1_from_3 = X1 + 3;
     const real *const X1_from_7 = X1 + 7;
     turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
+        subtract_1[i] = X1[i] - X0[i];
     }
     for (size_t i = 0; i < 6; ++i) {
         subtract_2[i] = X1_from_7[i] - X0_from_7[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     beside(1, 6, 6, join_1, subtract_2, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int stewart_sps_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, subtract_2[6] = {0}, join_1[6] = {0},
-        join_2[12] = {0}, scale_1[12] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, add_2[6] =
+    real join_2[12] = {0}, scale_1[12] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, add_2[6] =
         {0}, join_3[7] = {0}, X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
-    const real *const X0_from_3 = X0 + 3;
-    const real *const X0_from_7 = X0 + 7;
-    const real *const X1_from_0 = X1;
-    const real *const X1_from_3 = X1 + 3;
-    const real *const X1_from_7 = X1 + 7;
-    turn_between(X0_from_3, X1_from_3, turn_between_1);
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
-    }
-    for (size_t i = 0; i < 6; ++i) {
-        subtract_2[i] = X1_from_7[i] - X0_from_7[i];
-    }
-    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
-    beside(1, 6, 6, join_1, subtract_2, join_2);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(stewart_sps_difference(X0, X1, join_2), &why);
     for (size_t i = 0; i < 12; ++i) {
         scale_1[i] = join_2[i]*s[i%(1)];
     }
-    const real *const X0_from_0_2 = X0;
     const real *const X0_from_3_2 = X0 + 3;
     const real *const X0_from_7_2 = X0 + 7;
-    const real *const scale_1_from_0 = scale_1;
     const real *const scale_1_from_3 = scale_1 + 3;
     const real *const scale_1_from_6 = scale_1 + 6;
     turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
+        add_1[i] = X0[i] + scale_1[i];
     }
     for (size_t i = 0; i < 6; ++i) {
         add_2[i] = X0_from_7_2[i] + scale_1_from_6[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, join_3);
     beside(1, 7, 6, join_3, add_2, X);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

@@ -109,8 +109,9 @@ typedef struct {
             sps_base_frame_zx[8], sps_base_frame_zy[8], sps_base_frame_zz[8], sps_base_point_x[8],
             sps_base_point_y[8], sps_base_point_z[8], sps_branch_1[8], sps_branch_2[8],
             sps_h_3_in_spec3_x[8], sps_h_3_in_spec3_y[8], sps_h_3_in_spec3_z[8],
-            sps_h_4_in_spec3_x[8], sps_h_4_in_spec3_y[8], sps_h_4_in_spec3_z[8], sps_link3_mass[8],
-            sps_link4_mass[8], sps_platform_point_x[8], sps_platform_point_y[8],
+            sps_h_4_in_spec3_x[8], sps_h_4_in_spec3_y[8], sps_h_4_in_spec3_z[8],
+            sps_h_group_3_in_axes3_x[8], sps_h_group_3_in_axes3_y[8], sps_h_group_3_in_axes3_z[8],
+            sps_link3_mass[8], sps_link4_mass[8], sps_platform_point_x[8], sps_platform_point_y[8],
             sps_platform_point_z[8], sps_potential_t[8], sps_potential_t_2[8], sps_potential_t_3[8],
             sps_potential_t_4[8], sps_potential_t_5[8], sps_potential_t_6[8];
     stewart_sps_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
@@ -139,7 +140,7 @@ int stewart_sps_M(const stewart_sps_model *model, const stewart_sps_real *X, ste
 size_t stewart_sps_M_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real *X,
     stewart_sps_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1269 mul, 936 add, 18 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1278 mul, 924 add, 18 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_sps_Z(const stewart_sps_model *model, const stewart_sps_real *X, const
     stewart_sps_real *V, stewart_sps_real *Z);
@@ -166,7 +167,7 @@ int stewart_sps_joint_rates(const stewart_sps_model *model, const stewart_sps_re
 size_t stewart_sps_joint_rates_batch(const stewart_sps_model *model, size_t n, const
     stewart_sps_real *X, const stewart_sps_real *V, stewart_sps_real *rates, int *status);
 
-/* Accelerations of all joints. 762 mul, 474 add, 18 div, 12 sqrt, 12 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 750 mul, 465 add, 18 div, 12 sqrt, 12 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int stewart_sps_joint_accelerations(const stewart_sps_model *model, const stewart_sps_real *X,
     const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real *accelerations);
@@ -174,7 +175,7 @@ size_t stewart_sps_joint_accelerations_batch(const stewart_sps_model *model, siz
     stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 2175 mul, 1605 add, 18 div, 12 sqrt, 12 trig. In: X
+/* M, Z and H together, sharing the work. 2148 mul, 1569 add, 18 div, 12 sqrt, 12 trig. In: X
    (NQ), V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_sps_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
     stewart_sps_real *V, stewart_sps_real *M, stewart_sps_real *Z, stewart_sps_real *H);
@@ -183,7 +184,7 @@ size_t stewart_sps_dynamics_batch(const stewart_sps_model *model, size_t n, cons
     int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. Rows of passive extra coordinates hold
-   where complete_acceleration was used. 1365 mul, 1041 add, 18 div, 12 sqrt, 12 trig; the
+   where complete_acceleration was used. 1347 mul, 1005 add, 18 div, 12 sqrt, 12 trig; the
    solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
    tau (NU). */
 int stewart_sps_inverse_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
@@ -193,7 +194,7 @@ size_t stewart_sps_inverse_dynamics_batch(const stewart_sps_model *model, size_t
     stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, const
     stewart_sps_real *wrench, stewart_sps_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2175 mul, 1605 add, 18 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 2148 mul, 1569 add, 18 div, 12
    sqrt, 12 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_sps_forward_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
@@ -214,7 +215,7 @@ size_t stewart_sps_complete_acceleration_batch(const stewart_sps_model *model, s
     stewart_sps_real *wrench, stewart_sps_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 1218 mul, 906 add, 18 div, 12 sqrt, 12 trig; inverse dynamics
+   forces of inverse_dynamics. 1206 mul, 897 add, 18 div, 12 sqrt, 12 trig; inverse dynamics
    apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 3). */
 int stewart_sps_leg_reactions(const stewart_sps_model *model, const stewart_sps_real *X, const
     stewart_sps_real *V, const stewart_sps_real *A, const stewart_sps_real *wrench,
@@ -308,7 +309,7 @@ int stewart_sps_actuator_rates(const stewart_sps_model *model, const stewart_sps
 size_t stewart_sps_actuator_rates_batch(const stewart_sps_model *model, size_t n, const
     stewart_sps_real *X, const stewart_sps_real *V, stewart_sps_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 762 mul, 474 add, 18 div, 12 sqrt,
+/* Accelerations of the actuated joints, in the order of tau. 750 mul, 465 add, 18 div, 12 sqrt,
    12 trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int stewart_sps_actuator_accelerations(const stewart_sps_model *model, const stewart_sps_real *X,
     const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real *accelerations);

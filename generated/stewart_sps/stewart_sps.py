@@ -625,6 +625,10 @@ def _prepare(p):
     sps_Sigma_3_in_axes3_xx = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_xx
     sps_Sigma_3_in_axes3_yy = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_yy
     sps_Sigma_3_in_axes3_zz = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_zz
+    # (sps-h_group_3) first moments of the links that turn with link 3
+    sps_h_group_3_in_axes3_x = sps_h_3_in_spec3_y + sps_h_4_in_spec3_y
+    sps_h_group_3_in_axes3_y = sps_h_3_in_spec3_z + sps_h_4_in_spec3_z
+    sps_h_group_3_in_axes3_z = sps_h_3_in_spec3_x + sps_h_4_in_spec3_x
     # (h_star) first moment about the platform origin
     sps_h_star_t = sps_link4_mass*sps_platform_point_x
     sps_h_star_t_2 = sps_link4_mass*sps_platform_point_y
@@ -703,9 +707,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_sps,
         (sps_J_group_3_in_axes3_xx, sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz,
@@ -715,8 +719,8 @@ def _prepare(p):
                     sps_base_frame_xz, sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz,
                     sps_base_frame_zx, sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x,
                     sps_base_point_y, sps_base_point_z, sps_branch_1, sps_branch_2,
-                    sps_h_3_in_spec3_x, sps_h_3_in_spec3_y, sps_h_3_in_spec3_z,
                     sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z,
+                    sps_h_group_3_in_axes3_x, sps_h_group_3_in_axes3_y, sps_h_group_3_in_axes3_z,
                     sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,),
                 ),
             ),
@@ -740,9 +744,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
+                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_sps,
         (sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz, sps_J_group_3_in_axes3_yz,
@@ -750,9 +754,9 @@ def _prepare(p):
                     sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
                     sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
                     sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
-                    sps_branch_1, sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y,
-                    sps_h_3_in_spec3_z, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y,
-                    sps_h_4_in_spec3_z, sps_platform_point_x, sps_platform_point_y,
+                    sps_branch_1, sps_branch_2, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y,
+                    sps_h_4_in_spec3_z, sps_h_group_3_in_axes3_x, sps_h_group_3_in_axes3_y,
+                    sps_h_group_3_in_axes3_z, sps_platform_point_x, sps_platform_point_y,
                     sps_platform_point_z,),
                 ),
             ),
@@ -781,9 +785,9 @@ def _prepare(p):
                     sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
                     sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
                     sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
-                    sps_branch_1, sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y,
-                    sps_h_3_in_spec3_z, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y,
-                    sps_h_4_in_spec3_z, sps_platform_point_x, sps_platform_point_y,
+                    sps_branch_1, sps_branch_2, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y,
+                    sps_h_4_in_spec3_z, sps_h_group_3_in_axes3_x, sps_h_group_3_in_axes3_y,
+                    sps_h_group_3_in_axes3_z, sps_platform_point_x, sps_platform_point_y,
                     sps_platform_point_z,),
                 ),
             ),
@@ -833,9 +837,9 @@ def _prepare(p):
                     sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
                     sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
                     sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
-                    sps_branch_1, sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y,
-                    sps_h_3_in_spec3_z, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y,
-                    sps_h_4_in_spec3_z, sps_link4_mass, sps_platform_point_x,
+                    sps_branch_1, sps_branch_2, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y,
+                    sps_h_4_in_spec3_z, sps_h_group_3_in_axes3_x, sps_h_group_3_in_axes3_y,
+                    sps_h_group_3_in_axes3_z, sps_link4_mass, sps_platform_point_x,
                     sps_platform_point_y, sps_platform_point_z,),
                 ),
             ),
@@ -1541,11 +1545,11 @@ def _cleared_at(a, places):
     return result
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1802,8 +1806,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1811,7 +1815,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1819,11 +1823,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1871,17 +1875,16 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 2175 mul, 1605 add, 18 div, 12 sqrt, 12 trig
+# dynamics: 2148 mul, 1569 add, 18 div, 12 sqrt, 12 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1963,39 +1966,12 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_sps_xx, M_tt_xy, M_tt_xz, M_tt_sps_yy, M_tt_yz, M_tt_sps_zz, M_ta_xx, M_ta_sps_xy,
         M_ta_sps_xz, M_ta_sps_yx, M_ta_t, M_ta_sps_yz, M_ta_sps_zx, M_ta_sps_zy, M_ta_zz,
@@ -2010,9 +1986,9 @@ def _run_dynamics(m, X, V):
             sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
             sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
             sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
-            sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y, sps_h_3_in_spec3_z,
-            sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z, sps_platform_point_x,
-            sps_platform_point_y, sps_platform_point_z,
+            sps_branch_2, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z,
+            sps_h_group_3_in_axes3_x, sps_h_group_3_in_axes3_y, sps_h_group_3_in_axes3_z,
+            sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
@@ -2056,6 +2032,8 @@ def _run_dynamics(m, X, V):
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
         sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-q_2) displacement of joint 2
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         # (sps-S_dot) velocity of the connection point
         sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
         sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
@@ -2084,7 +2062,6 @@ def _run_dynamics(m, X, V):
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y
         sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1
         sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3
@@ -2133,9 +2110,12 @@ def _run_dynamics(m, X, V):
         # (sps-omega_3) angular velocity of link 3
         sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3
         # (sps-W_3) centripetal tensor of link 3
+        sps_W_3_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
+        sps_W_3_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
         sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y
         sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z
         sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z
+        sps_W_3_t_3 = sps_W_3_t + sps_W_3_t_2
         # (sps-u_1) centripetal acceleration of the connection point
         sps_u_1_x = omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
         sps_u_1_y = omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
@@ -2146,8 +2126,10 @@ def _run_dynamics(m, X, V):
         sps_u_1_in_axes3_y = (
         axis_y_sps_axes3_x*sps_u_1_x + axis_y_sps_axes3_y*sps_u_1_y + axis_y_sps_axes3_z*sps_u_1_z
         )
+        sps_u_1_in_axes3_z = sps_u_1_x*sps_w_4_x + sps_u_1_y*sps_w_4_y + sps_u_1_z*sps_w_4_z
         # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
         sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t
+        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
         # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
         sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3
         sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3
@@ -2190,9 +2172,7 @@ def _run_dynamics(m, X, V):
         sps_d_alpha_2_in_axes3_yy = sps_e_1_in_axes3_y*sps_w_1_in_axes3_y + sps_s_3*sps_w_2_t
         # (sps-alpha_2_o) remainder of: angular acceleration of link 2
         sps_alpha_2_o_in_axes2_x = sps_c_2*sps_qdd_1_o - sps_zeta_2_t
-        sps_alpha_2_o_in_axes2_y = (
-        sps_e_1_in_axes2_y*sps_qdd_1_o + sps_omega_1_in_axes2_x*sps_qd_2_t
-        )
+        sps_alpha_2_o_in_axes2_y = sps_zeta_2_in_axes2_y + sps_e_1_in_axes2_y*sps_qdd_1_o
         # (sps-alpha_3_o) remainder of: angular acceleration of link 3
         sps_alpha_3_o_in_axes3_x = (
         sps_zeta_3_in_axes3_x + sps_alpha_2_o_in_axes2_x*sps_s_3 - sps_c_3*sps_qdd_2_o_t
@@ -2207,7 +2187,7 @@ def _run_dynamics(m, X, V):
         sps_B_3_o_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x
         sps_B_3_o_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y
         sps_B_3_o_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x
-        # (sps-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
+        # (sps-acc_4) acceleration of the reference point of link 4, less gravity
         sps_g_in_axes3_x = (
         axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
         )
@@ -2215,17 +2195,26 @@ def _run_dynamics(m, X, V):
         axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y + axis_y_sps_axes3_z*gravity_z
         )
         sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y + gravity_z*sps_w_4_z
-        sps_acc_4_o_in_axes3_x = sps_u_1_in_axes3_x - sps_g_in_axes3_x
-        sps_acc_4_o_in_axes3_y = sps_u_1_in_axes3_y - sps_g_in_axes3_y
-        sps_acc_4_o_in_axes3_z = (
-        sps_u_1_x*sps_w_4_x + sps_u_1_y*sps_w_4_y + sps_u_1_z*sps_w_4_z - sps_g_in_axes3_z
-        )
+        # (sps-phi_4) inertia force of link 4 from its turning about its reference point
+        sps_phi_4_t = sps_W_3_t_3*sps_h_4_in_spec3_x
         # (sps-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
-        sps_phi_4_o_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
-        sps_phi_4_o_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
         sps_phi_4_o_in_axes3_z = (
         sps_B_3_o_in_axes3_zx*sps_h_4_in_spec3_y + sps_B_3_o_in_axes3_zy*sps_h_4_in_spec3_z -
-            sps_h_4_in_spec3_x*(sps_phi_4_o_t + sps_phi_4_o_t_2)
+            sps_phi_4_t
+        )
+        # (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        sps_mu_3_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z
+        sps_mu_3_t_2 = sps_J_group_3_in_axes3_yz*(sps_W_3_t_2 - sps_mu_3_t)
+        sps_mu_3_t_3 = sps_J_group_3_in_axes3_xz*(sps_W_3_t - sps_mu_3_t)
+        sps_mu_3_t_4 = sps_J_group_3_in_axes3_xy*(sps_W_3_t - sps_W_3_t_2)
+        sps_mu_3_t_5 = (
+        sps_g_in_axes3_z*sps_h_group_3_in_axes3_y - sps_g_in_axes3_y*sps_h_group_3_in_axes3_z
+        )
+        sps_mu_3_t_6 = (
+        sps_g_in_axes3_x*sps_h_group_3_in_axes3_z - sps_g_in_axes3_z*sps_h_group_3_in_axes3_x
+        )
+        sps_mu_3_t_7 = (
+        sps_g_in_axes3_y*sps_h_group_3_in_axes3_x - sps_g_in_axes3_x*sps_h_group_3_in_axes3_y
         )
         # (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
         sps_d_mu_3_in_axes3_xx = (
@@ -2259,33 +2248,26 @@ def _run_dynamics(m, X, V):
             sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zy
         )
         # (sps-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        sps_mu_3_o_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z
         sps_mu_3_o_in_axes3_x = (
-        sps_B_3_o_in_axes3_yx*sps_J_group_3_in_axes3_xz +
-            sps_B_3_o_in_axes3_zy*sps_Sigma_3_in_axes3_yy +
-            sps_J_group_3_in_axes3_yz*(sps_phi_4_o_t_2 - sps_mu_3_o_t) +
-            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_z + sps_g_in_axes3_y*sps_h_3_in_spec3_x -
-            sps_B_3_o_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+        sps_mu_3_t_2 + sps_B_3_o_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            sps_B_3_o_in_axes3_zy*sps_Sigma_3_in_axes3_yy + sps_h_4_in_spec3_z*sps_u_1_in_axes3_z
+            - sps_mu_3_t_5 - sps_B_3_o_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
             sps_B_3_o_in_axes3_zx*sps_J_group_3_in_axes3_xy -
-            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z
+            sps_h_4_in_spec3_x*sps_u_1_in_axes3_y
         )
         sps_mu_3_o_in_axes3_y = (
         sps_B_3_o_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
             sps_B_3_o_in_axes3_zy*sps_J_group_3_in_axes3_xy +
-            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            sps_h_4_in_spec3_x*sps_u_1_in_axes3_x - sps_mu_3_t_3 - sps_mu_3_t_6 -
             sps_B_3_o_in_axes3_xy*sps_J_group_3_in_axes3_yz -
-            sps_B_3_o_in_axes3_zx*sps_Sigma_3_in_axes3_xx -
-            sps_J_group_3_in_axes3_xz*(sps_phi_4_o_t - sps_mu_3_o_t) -
-            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_y - sps_g_in_axes3_x*sps_h_3_in_spec3_x
+            sps_B_3_o_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_h_4_in_spec3_y*sps_u_1_in_axes3_z
         )
         sps_mu_3_o_in_axes3_z = (
-        sps_B_3_o_in_axes3_xz*sps_J_group_3_in_axes3_yz +
-            sps_B_3_o_in_axes3_yx*sps_Sigma_3_in_axes3_xx +
-            sps_J_group_3_in_axes3_xy*(sps_phi_4_o_t - sps_phi_4_o_t_2) +
-            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_y + sps_g_in_axes3_x*sps_h_3_in_spec3_z -
-            sps_B_3_o_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
+        sps_mu_3_t_4 + sps_B_3_o_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            sps_B_3_o_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_h_4_in_spec3_y*sps_u_1_in_axes3_y
+            - sps_mu_3_t_7 - sps_B_3_o_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
             sps_B_3_o_in_axes3_yz*sps_J_group_3_in_axes3_xz -
-            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y
+            sps_h_4_in_spec3_z*sps_u_1_in_axes3_x
         )
         sps_mu_3_o_in_axes2_z = sps_c_3*sps_mu_3_o_in_axes3_x - sps_mu_3_o_in_axes3_y*sps_s_3
         # (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
@@ -2311,6 +2293,9 @@ def _run_dynamics(m, X, V):
         sps_d_G_in_axes3_yz = (
         sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_y - sps_d_Gamma_2_in_axes3_z*sps_w_2_t
         )
+        # (sps-c) leg force on the platform without actuation and without the mass at the connection point
+        sps_c_t = sps_h_4_in_spec3_y*(sps_W_3_t_2 + sps_mu_3_t)
+        sps_c_t_2 = sps_h_4_in_spec3_z*(sps_W_3_t + sps_mu_3_t)
         # (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         sps_d_c_in_axes3_xx = (
         sps_d_alpha_1_in_axes3_zx*sps_h_4_in_spec3_z -
@@ -2331,14 +2316,14 @@ def _run_dynamics(m, X, V):
         )
         # (sps-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         sps_c_o_in_axes3_x = (
-        sps_h_4_in_spec3_y*(sps_mu_3_o_t + sps_phi_4_o_t_2) -
-            inv_sps_w_1_t*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_y) -
-            sps_B_3_o_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_o_in_axes3_xz*sps_h_4_in_spec3_x
+        sps_c_t - inv_sps_w_1_t*(sps_Gamma_1_o*sps_v_2_t +
+            sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_y) - sps_B_3_o_in_axes3_xy*sps_h_4_in_spec3_z -
+            sps_B_3_o_in_axes3_xz*sps_h_4_in_spec3_x
         )
         sps_c_o_in_axes3_y = (
-        inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_x -
-            sps_Gamma_1_o*sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_o_t + sps_phi_4_o_t)
-            - sps_B_3_o_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_o_in_axes3_yz*sps_h_4_in_spec3_x
+        sps_c_t_2 + inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_x -
+            sps_Gamma_1_o*sps_v_2_in_axes3_x) - sps_B_3_o_in_axes3_yx*sps_h_4_in_spec3_y -
+            sps_B_3_o_in_axes3_yz*sps_h_4_in_spec3_x
         )
         # (sps-Q) inertia of the leg at the connection point, without the mass gathered there
         sps_Q_t = 0.5*sps_d_c_in_axes3_xx
@@ -2694,6 +2679,8 @@ def _run_M(m, X):
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
         sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-q_2) displacement of joint 2
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         # (sps-v_1) velocity of the connection point per rate of joint 1
         sps_e_1_in_axes3_x = sps_c_2*sps_s_3
         sps_e_1_in_axes3_y = sps_c_2*sps_c_3
@@ -2714,8 +2701,26 @@ def _run_M(m, X):
         sps_w_4_x = inv_sps_root_2*sps_S_x
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
+        # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y
+        sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1
+        sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3
+        axis_y_sps_axes3_x = (
+        sps_S_dot_rest_t_2*sps_base_frame_xx + sps_S_dot_rest_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y
+        )
+        axis_y_sps_axes3_y = (
+        sps_S_dot_rest_t_2*sps_base_frame_yx + sps_S_dot_rest_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y
+        )
+        axis_y_sps_axes3_z = (
+        sps_S_dot_rest_t_2*sps_base_frame_zx + sps_S_dot_rest_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y
+        )
+        axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
+        axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
+        axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y - axis_y_sps_axes3_y*sps_w_4_x
         # (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         sps_d_alpha_1_in_axes3_zx = sps_e_1_in_axes2_y*sps_w_1_in_axes3_x
         sps_d_alpha_1_in_axes3_zy = sps_e_1_in_axes2_y*sps_w_1_in_axes3_y
         # (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2
@@ -2795,59 +2800,41 @@ def _run_M(m, X):
             sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_y
         )
         # (sps-Q) inertia of the leg at the connection point, without the mass gathered there
-        sps_Q_t = sps_c_3*sps_e_1_in_axes2_y
-        sps_Q_t_2 = sps_s_1*sps_s_3 - sps_Q_t*sps_c_1
-        sps_Q_t_3 = -sps_Q_t*sps_s_1 - sps_c_1*sps_s_3
-        axis_y_sps_axes3_x = (
-        sps_Q_t_2*sps_base_frame_xx + sps_Q_t_3*sps_base_frame_xy +
-            sps_base_frame_xz*sps_e_1_in_axes3_y
-        )
-        axis_y_sps_axes3_y = (
-        sps_Q_t_2*sps_base_frame_yx + sps_Q_t_3*sps_base_frame_yy +
-            sps_base_frame_yz*sps_e_1_in_axes3_y
-        )
-        axis_y_sps_axes3_z = (
-        sps_Q_t_2*sps_base_frame_zx + sps_Q_t_3*sps_base_frame_zy +
-            sps_base_frame_zz*sps_e_1_in_axes3_y
-        )
-        axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
-        axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
-        axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y - axis_y_sps_axes3_y*sps_w_4_x
-        sps_Q_t_4 = 0.5*sps_d_c_in_axes3_xx
-        sps_Q_t_5 = 0.5*sps_d_c_in_axes3_yy
-        sps_Q_t_6 = (
-        axis_x_sps_axes3_x*sps_Q_t_4 + axis_y_sps_axes3_x*sps_d_c_in_axes3_xy -
+        sps_Q_t = 0.5*sps_d_c_in_axes3_xx
+        sps_Q_t_2 = 0.5*sps_d_c_in_axes3_yy
+        sps_Q_t_3 = (
+        axis_x_sps_axes3_x*sps_Q_t + axis_y_sps_axes3_x*sps_d_c_in_axes3_xy -
             sps_d_G_in_axes3_xz*sps_w_4_x
         )
-        sps_Q_t_7 = (
-        sps_d_G_in_axes3_xz*sps_w_4_y - axis_x_sps_axes3_y*sps_Q_t_4 -
+        sps_Q_t_4 = (
+        sps_d_G_in_axes3_xz*sps_w_4_y - axis_x_sps_axes3_y*sps_Q_t -
             axis_y_sps_axes3_y*sps_d_c_in_axes3_xy
         )
-        sps_Q_t_8 = (
-        axis_x_sps_axes3_z*sps_Q_t_4 + axis_y_sps_axes3_z*sps_d_c_in_axes3_xy -
+        sps_Q_t_5 = (
+        axis_x_sps_axes3_z*sps_Q_t + axis_y_sps_axes3_z*sps_d_c_in_axes3_xy -
             sps_d_G_in_axes3_xz*sps_w_4_z
         )
-        sps_Q_t_9 = sps_d_G_in_axes3_yz*sps_w_4_x - axis_y_sps_axes3_x*sps_Q_t_5
-        sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_5 - sps_d_G_in_axes3_yz*sps_w_4_y
-        sps_Q_t_11 = axis_y_sps_axes3_z*sps_Q_t_5 - sps_d_G_in_axes3_yz*sps_w_4_z
-        sps_Q_t_12 = axis_x_sps_axes3_x*sps_Q_t_6 - axis_y_sps_axes3_x*sps_Q_t_9
-        sps_Q_xx = -2.0*sps_Q_t_12
+        sps_Q_t_6 = sps_d_G_in_axes3_yz*sps_w_4_x - axis_y_sps_axes3_x*sps_Q_t_2
+        sps_Q_t_7 = axis_y_sps_axes3_y*sps_Q_t_2 - sps_d_G_in_axes3_yz*sps_w_4_y
+        sps_Q_t_8 = axis_y_sps_axes3_z*sps_Q_t_2 - sps_d_G_in_axes3_yz*sps_w_4_z
+        sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 - axis_y_sps_axes3_x*sps_Q_t_6
+        sps_Q_xx = -2.0*sps_Q_t_9
         sps_Q_xy = (
-        axis_x_sps_axes3_x*sps_Q_t_7 + axis_y_sps_axes3_y*sps_Q_t_9 - axis_x_sps_axes3_y*sps_Q_t_6
-            - axis_y_sps_axes3_x*sps_Q_t_10
+        axis_x_sps_axes3_x*sps_Q_t_4 + axis_y_sps_axes3_y*sps_Q_t_6 - axis_x_sps_axes3_y*sps_Q_t_3
+            - axis_y_sps_axes3_x*sps_Q_t_7
         )
         sps_Q_xz = (
-        axis_y_sps_axes3_z*sps_Q_t_9 - axis_x_sps_axes3_x*sps_Q_t_8 - axis_x_sps_axes3_z*sps_Q_t_6
-            - axis_y_sps_axes3_x*sps_Q_t_11
+        axis_y_sps_axes3_z*sps_Q_t_6 - axis_x_sps_axes3_x*sps_Q_t_5 - axis_x_sps_axes3_z*sps_Q_t_3
+            - axis_y_sps_axes3_x*sps_Q_t_8
         )
-        sps_Q_t_13 = axis_y_sps_axes3_y*sps_Q_t_10 - axis_x_sps_axes3_y*sps_Q_t_7
-        sps_Q_yy = -2.0*sps_Q_t_13
+        sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_4
+        sps_Q_yy = -2.0*sps_Q_t_10
         sps_Q_yz = (
-        axis_x_sps_axes3_z*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_8 -
-            axis_y_sps_axes3_y*sps_Q_t_11 - axis_y_sps_axes3_z*sps_Q_t_10
+        axis_x_sps_axes3_z*sps_Q_t_4 - axis_x_sps_axes3_y*sps_Q_t_5 - axis_y_sps_axes3_y*sps_Q_t_8
+            - axis_y_sps_axes3_z*sps_Q_t_7
         )
-        sps_Q_t_14 = axis_x_sps_axes3_z*sps_Q_t_8 + axis_y_sps_axes3_z*sps_Q_t_11
-        sps_Q_zz = -2.0*sps_Q_t_14
+        sps_Q_t_11 = axis_x_sps_axes3_z*sps_Q_t_5 + axis_y_sps_axes3_z*sps_Q_t_8
+        sps_Q_zz = -2.0*sps_Q_t_11
         # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
         sps_d_P_3_x = (
         axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx + axis_y_sps_axes3_x*sps_d_mu_3_in_axes3_zy
@@ -2987,16 +2974,16 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1269 mul, 936 add, 18 div, 12 sqrt, 12 trig
+# Z: 1278 mul, 924 add, 18 div, 12 sqrt, 12 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3052,6 +3039,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3060,39 +3063,12 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_sps_x, Z_t_sps_y, Z_t_sps_z, Z_a_sps_x, Z_a_sps_y, Z_a_sps_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -3101,9 +3077,9 @@ def _run_Z(m, X, V):
             sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
             sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
             sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
-            sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y, sps_h_3_in_spec3_z,
-            sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z, sps_platform_point_x,
-            sps_platform_point_y, sps_platform_point_z,
+            sps_branch_2, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z,
+            sps_h_group_3_in_axes3_x, sps_h_group_3_in_axes3_y, sps_h_group_3_in_axes3_z,
+            sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
@@ -3147,6 +3123,8 @@ def _run_Z(m, X, V):
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
         sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-q_2) displacement of joint 2
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         # (sps-S_dot) velocity of the connection point
         sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
         sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
@@ -3164,12 +3142,12 @@ def _run_Z(m, X, V):
         sps_v_2_t = sps_c_3*sps_root_2
         # (sps-w_1) reciprocal vector 1
         sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
+        inv_sps_w_1_t = 1.0/sps_w_1_t
         # (sps-w_4) reciprocal vector 3
         sps_w_4_x = inv_sps_root_2*sps_S_x
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y
         sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1
         sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3
@@ -3200,7 +3178,6 @@ def _run_Z(m, X, V):
         sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y + sps_S_dot_z*sps_w_4_z
         )
         # (sps-qd_1) rate of joint 1
-        inv_sps_w_1_t = 1.0/sps_w_1_t
         sps_qd_1 = (
         inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
             sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x)
@@ -3219,9 +3196,12 @@ def _run_Z(m, X, V):
         # (sps-omega_3) angular velocity of link 3
         sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3
         # (sps-W_3) centripetal tensor of link 3
+        sps_W_3_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
+        sps_W_3_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
         sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y
         sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z
         sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z
+        sps_W_3_t_3 = sps_W_3_t + sps_W_3_t_2
         # (sps-u_1) centripetal acceleration of the connection point
         sps_u_1_x = omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
         sps_u_1_y = omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
@@ -3232,8 +3212,10 @@ def _run_Z(m, X, V):
         sps_u_1_in_axes3_y = (
         axis_y_sps_axes3_x*sps_u_1_x + axis_y_sps_axes3_y*sps_u_1_y + axis_y_sps_axes3_z*sps_u_1_z
         )
+        sps_u_1_in_axes3_z = sps_u_1_x*sps_w_4_x + sps_u_1_y*sps_w_4_y + sps_u_1_z*sps_w_4_z
         # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
         sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t
+        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
         # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
         sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3
         sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3
@@ -3264,9 +3246,7 @@ def _run_Z(m, X, V):
         )
         # (sps-alpha_2_o) remainder of: angular acceleration of link 2
         sps_alpha_2_o_in_axes2_x = sps_c_2*sps_qdd_1_o - sps_zeta_2_t
-        sps_alpha_2_o_in_axes2_y = (
-        sps_e_1_in_axes2_y*sps_qdd_1_o + sps_omega_1_in_axes2_x*sps_qd_2_t
-        )
+        sps_alpha_2_o_in_axes2_y = sps_zeta_2_in_axes2_y + sps_e_1_in_axes2_y*sps_qdd_1_o
         # (sps-alpha_3_o) remainder of: angular acceleration of link 3
         sps_alpha_3_o_in_axes3_x = (
         sps_zeta_3_in_axes3_x + sps_alpha_2_o_in_axes2_x*sps_s_3 - sps_c_3*sps_qdd_2_o_t
@@ -3281,7 +3261,7 @@ def _run_Z(m, X, V):
         sps_B_3_o_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x
         sps_B_3_o_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y
         sps_B_3_o_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x
-        # (sps-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
+        # (sps-acc_4) acceleration of the reference point of link 4, less gravity
         sps_g_in_axes3_x = (
         axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
         )
@@ -3289,46 +3269,48 @@ def _run_Z(m, X, V):
         axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y + axis_y_sps_axes3_z*gravity_z
         )
         sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y + gravity_z*sps_w_4_z
-        sps_acc_4_o_in_axes3_x = sps_u_1_in_axes3_x - sps_g_in_axes3_x
-        sps_acc_4_o_in_axes3_y = sps_u_1_in_axes3_y - sps_g_in_axes3_y
-        sps_acc_4_o_in_axes3_z = (
-        sps_u_1_x*sps_w_4_x + sps_u_1_y*sps_w_4_y + sps_u_1_z*sps_w_4_z - sps_g_in_axes3_z
-        )
+        # (sps-phi_4) inertia force of link 4 from its turning about its reference point
+        sps_phi_4_t = sps_W_3_t_3*sps_h_4_in_spec3_x
         # (sps-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
-        sps_phi_4_o_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
-        sps_phi_4_o_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
         sps_phi_4_o_in_axes3_z = (
         sps_B_3_o_in_axes3_zx*sps_h_4_in_spec3_y + sps_B_3_o_in_axes3_zy*sps_h_4_in_spec3_z -
-            sps_h_4_in_spec3_x*(sps_phi_4_o_t + sps_phi_4_o_t_2)
+            sps_phi_4_t
+        )
+        # (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        sps_mu_3_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z
+        sps_mu_3_t_2 = sps_J_group_3_in_axes3_yz*(sps_W_3_t_2 - sps_mu_3_t)
+        sps_mu_3_t_3 = sps_J_group_3_in_axes3_xz*(sps_W_3_t - sps_mu_3_t)
+        sps_mu_3_t_4 = sps_J_group_3_in_axes3_xy*(sps_W_3_t - sps_W_3_t_2)
+        sps_mu_3_t_5 = (
+        sps_g_in_axes3_z*sps_h_group_3_in_axes3_y - sps_g_in_axes3_y*sps_h_group_3_in_axes3_z
+        )
+        sps_mu_3_t_6 = (
+        sps_g_in_axes3_x*sps_h_group_3_in_axes3_z - sps_g_in_axes3_z*sps_h_group_3_in_axes3_x
+        )
+        sps_mu_3_t_7 = (
+        sps_g_in_axes3_y*sps_h_group_3_in_axes3_x - sps_g_in_axes3_x*sps_h_group_3_in_axes3_y
         )
         # (sps-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
-        sps_mu_3_o_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z
         sps_mu_3_o_in_axes3_x = (
-        sps_B_3_o_in_axes3_yx*sps_J_group_3_in_axes3_xz +
-            sps_B_3_o_in_axes3_zy*sps_Sigma_3_in_axes3_yy +
-            sps_J_group_3_in_axes3_yz*(sps_phi_4_o_t_2 - sps_mu_3_o_t) +
-            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_z + sps_g_in_axes3_y*sps_h_3_in_spec3_x -
-            sps_B_3_o_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+        sps_mu_3_t_2 + sps_B_3_o_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            sps_B_3_o_in_axes3_zy*sps_Sigma_3_in_axes3_yy + sps_h_4_in_spec3_z*sps_u_1_in_axes3_z
+            - sps_mu_3_t_5 - sps_B_3_o_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
             sps_B_3_o_in_axes3_zx*sps_J_group_3_in_axes3_xy -
-            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z
+            sps_h_4_in_spec3_x*sps_u_1_in_axes3_y
         )
         sps_mu_3_o_in_axes3_y = (
         sps_B_3_o_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
             sps_B_3_o_in_axes3_zy*sps_J_group_3_in_axes3_xy +
-            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            sps_h_4_in_spec3_x*sps_u_1_in_axes3_x - sps_mu_3_t_3 - sps_mu_3_t_6 -
             sps_B_3_o_in_axes3_xy*sps_J_group_3_in_axes3_yz -
-            sps_B_3_o_in_axes3_zx*sps_Sigma_3_in_axes3_xx -
-            sps_J_group_3_in_axes3_xz*(sps_phi_4_o_t - sps_mu_3_o_t) -
-            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_y - sps_g_in_axes3_x*sps_h_3_in_spec3_x
+            sps_B_3_o_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_h_4_in_spec3_y*sps_u_1_in_axes3_z
         )
         sps_mu_3_o_in_axes3_z = (
-        sps_B_3_o_in_axes3_xz*sps_J_group_3_in_axes3_yz +
-            sps_B_3_o_in_axes3_yx*sps_Sigma_3_in_axes3_xx +
-            sps_J_group_3_in_axes3_xy*(sps_phi_4_o_t - sps_phi_4_o_t_2) +
-            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_y + sps_g_in_axes3_x*sps_h_3_in_spec3_z -
-            sps_B_3_o_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
+        sps_mu_3_t_4 + sps_B_3_o_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            sps_B_3_o_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_h_4_in_spec3_y*sps_u_1_in_axes3_y
+            - sps_mu_3_t_7 - sps_B_3_o_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
             sps_B_3_o_in_axes3_yz*sps_J_group_3_in_axes3_xz -
-            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y
+            sps_h_4_in_spec3_z*sps_u_1_in_axes3_x
         )
         sps_mu_3_o_in_axes2_z = sps_c_3*sps_mu_3_o_in_axes3_x - sps_mu_3_o_in_axes3_y*sps_s_3
         # (sps-Gamma_1_o) remainder of: moment about axis 1 of the distal links' inertia and weight
@@ -3336,16 +3318,19 @@ def _run_Z(m, X, V):
         sps_e_1_in_axes2_y*sps_mu_3_o_in_axes3_z + sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x +
             sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y
         )
+        # (sps-c) leg force on the platform without actuation and without the mass at the connection point
+        sps_c_t = sps_h_4_in_spec3_y*(sps_W_3_t_2 + sps_mu_3_t)
+        sps_c_t_2 = sps_h_4_in_spec3_z*(sps_W_3_t + sps_mu_3_t)
         # (sps-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         sps_c_o_in_axes3_x = (
-        sps_h_4_in_spec3_y*(sps_mu_3_o_t + sps_phi_4_o_t_2) -
-            inv_sps_w_1_t*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_y) -
-            sps_B_3_o_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_o_in_axes3_xz*sps_h_4_in_spec3_x
+        sps_c_t - inv_sps_w_1_t*(sps_Gamma_1_o*sps_v_2_t +
+            sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_y) - sps_B_3_o_in_axes3_xy*sps_h_4_in_spec3_z -
+            sps_B_3_o_in_axes3_xz*sps_h_4_in_spec3_x
         )
         sps_c_o_in_axes3_y = (
-        inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_x -
-            sps_Gamma_1_o*sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_o_t + sps_phi_4_o_t)
-            - sps_B_3_o_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_o_in_axes3_yz*sps_h_4_in_spec3_x
+        sps_c_t_2 + inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_x -
+            sps_Gamma_1_o*sps_v_2_in_axes3_x) - sps_B_3_o_in_axes3_yx*sps_h_4_in_spec3_y -
+            sps_B_3_o_in_axes3_yz*sps_h_4_in_spec3_x
         )
         # (sps-U) velocity and gravity terms of the leg force
         sps_U_x = (
@@ -3473,8 +3458,9 @@ def _run_H(m, X):
         # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
         sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
         sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
-        # (sps-w_4) reciprocal vector 3
+        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
+        # (sps-w_4) reciprocal vector 3
         sps_w_4_x = inv_sps_root_2*sps_S_x
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
@@ -3497,7 +3483,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1365 mul, 1041 add, 18 div, 12 sqrt, 12 trig
+# required: 1347 mul, 1005 add, 18 div, 12 sqrt, 12 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3573,9 +3559,22 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -3588,21 +3587,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
-        f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
-        f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
-        f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*m_star - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -3651,9 +3638,9 @@ def _run_required(m, X, V, A):
             sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
             sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
             sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
-            sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y, sps_h_3_in_spec3_z,
-            sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z, sps_platform_point_x,
-            sps_platform_point_y, sps_platform_point_z,
+            sps_branch_2, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z,
+            sps_h_group_3_in_axes3_x, sps_h_group_3_in_axes3_y, sps_h_group_3_in_axes3_z,
+            sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
@@ -3698,6 +3685,8 @@ def _run_required(m, X, V, A):
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
         sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-q_2) displacement of joint 2
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         # (sps-S_dot) velocity of the connection point
         sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
         sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
@@ -3715,12 +3704,12 @@ def _run_required(m, X, V, A):
         sps_v_2_t = sps_c_3*sps_root_2
         # (sps-w_1) reciprocal vector 1
         sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
+        inv_sps_w_1_t = 1.0/sps_w_1_t
         # (sps-w_4) reciprocal vector 3
         sps_w_4_x = inv_sps_root_2*sps_S_x
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y
         sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1
         sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3
@@ -3751,7 +3740,6 @@ def _run_required(m, X, V, A):
         sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y + sps_S_dot_z*sps_w_4_z
         )
         # (sps-qd_1) rate of joint 1
-        inv_sps_w_1_t = 1.0/sps_w_1_t
         sps_qd_1 = (
         inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
             sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x)
@@ -3770,17 +3758,16 @@ def _run_required(m, X, V, A):
         # (sps-omega_3) angular velocity of link 3
         sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3
         # (sps-W_3) centripetal tensor of link 3
+        sps_W_3_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
+        sps_W_3_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
         sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y
         sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z
         sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z
-        # (sps-a_p) acceleration of the connection point without its centripetal part
-        sps_a_p_x = t_ddot_x + alpha_y*sps_q_z - alpha_z*sps_q_y
-        sps_a_p_y = t_ddot_y + alpha_z*sps_q_x - alpha_x*sps_q_z
-        sps_a_p_z = t_ddot_z + alpha_x*sps_q_y - alpha_y*sps_q_x
+        sps_W_3_t_3 = sps_W_3_t + sps_W_3_t_2
         # (sps-S_ddot) acceleration of the connection point
-        sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
-        sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
-        sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
+        sps_S_ddot_x = t_ddot_x + B_p_xy*sps_q_y + B_p_xz*sps_q_z - W_p_t_4*sps_q_x
+        sps_S_ddot_y = t_ddot_y + B_p_yx*sps_q_x + B_p_yz*sps_q_z - W_p_t_5*sps_q_y
+        sps_S_ddot_z = t_ddot_z + B_p_zx*sps_q_x + B_p_zy*sps_q_y - W_p_t_6*sps_q_z
         sps_S_ddot_in_axes3_x = (
         axis_x_sps_axes3_x*sps_S_ddot_x + axis_x_sps_axes3_y*sps_S_ddot_y +
             axis_x_sps_axes3_z*sps_S_ddot_z
@@ -3789,8 +3776,12 @@ def _run_required(m, X, V, A):
         axis_y_sps_axes3_x*sps_S_ddot_x + axis_y_sps_axes3_y*sps_S_ddot_y +
             axis_y_sps_axes3_z*sps_S_ddot_z
         )
+        sps_S_ddot_in_axes3_z = (
+        sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y + sps_S_ddot_z*sps_w_4_z
+        )
         # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
         sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t
+        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
         # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
         sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3
         sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3
@@ -3821,7 +3812,7 @@ def _run_required(m, X, V, A):
         )
         # (sps-alpha_2) angular acceleration of link 2
         sps_alpha_2_in_axes2_x = sps_c_2*sps_qdd_1 - sps_zeta_2_t
-        sps_alpha_2_in_axes2_y = sps_e_1_in_axes2_y*sps_qdd_1 + sps_omega_1_in_axes2_x*sps_qd_2_t
+        sps_alpha_2_in_axes2_y = sps_zeta_2_in_axes2_y + sps_e_1_in_axes2_y*sps_qdd_1
         # (sps-alpha_3) angular acceleration of link 3
         sps_alpha_3_in_axes3_x = (
         sps_zeta_3_in_axes3_x + sps_alpha_2_in_axes2_x*sps_s_3 - sps_c_3*sps_qdd_2_t
@@ -3845,45 +3836,46 @@ def _run_required(m, X, V, A):
         axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y + axis_y_sps_axes3_z*gravity_z
         )
         sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y + gravity_z*sps_w_4_z
-        sps_acc_4_in_axes3_x = sps_S_ddot_in_axes3_x - sps_g_in_axes3_x
-        sps_acc_4_in_axes3_y = sps_S_ddot_in_axes3_y - sps_g_in_axes3_y
-        sps_acc_4_in_axes3_z = (
-        sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y + sps_S_ddot_z*sps_w_4_z -
-            sps_g_in_axes3_z
-        )
         # (sps-phi_4) inertia force of link 4 from its turning about its reference point
-        sps_phi_4_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
-        sps_phi_4_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
+        sps_phi_4_t = sps_W_3_t_3*sps_h_4_in_spec3_x
         sps_phi_4_in_axes3_z = (
         sps_B_3_in_axes3_zx*sps_h_4_in_spec3_y + sps_B_3_in_axes3_zy*sps_h_4_in_spec3_z -
-            sps_h_4_in_spec3_x*(sps_phi_4_t + sps_phi_4_t_2)
+            sps_phi_4_t
         )
         # (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points
         sps_mu_3_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z
+        sps_mu_3_t_2 = sps_J_group_3_in_axes3_yz*(sps_W_3_t_2 - sps_mu_3_t)
+        sps_mu_3_t_3 = sps_J_group_3_in_axes3_xz*(sps_W_3_t - sps_mu_3_t)
+        sps_mu_3_t_4 = sps_J_group_3_in_axes3_xy*(sps_W_3_t - sps_W_3_t_2)
+        sps_mu_3_t_5 = (
+        sps_g_in_axes3_z*sps_h_group_3_in_axes3_y - sps_g_in_axes3_y*sps_h_group_3_in_axes3_z
+        )
+        sps_mu_3_t_6 = (
+        sps_g_in_axes3_x*sps_h_group_3_in_axes3_z - sps_g_in_axes3_z*sps_h_group_3_in_axes3_x
+        )
+        sps_mu_3_t_7 = (
+        sps_g_in_axes3_y*sps_h_group_3_in_axes3_x - sps_g_in_axes3_x*sps_h_group_3_in_axes3_y
+        )
         sps_mu_3_in_axes3_x = (
-        sps_B_3_in_axes3_yx*sps_J_group_3_in_axes3_xz +
-            sps_B_3_in_axes3_zy*sps_Sigma_3_in_axes3_yy + sps_J_group_3_in_axes3_yz*(sps_phi_4_t_2
-            - sps_mu_3_t) + sps_acc_4_in_axes3_z*sps_h_4_in_spec3_z +
-            sps_g_in_axes3_y*sps_h_3_in_spec3_x - sps_B_3_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+        sps_mu_3_t_2 + sps_B_3_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            sps_B_3_in_axes3_zy*sps_Sigma_3_in_axes3_yy + sps_S_ddot_in_axes3_z*sps_h_4_in_spec3_z
+            - sps_mu_3_t_5 - sps_B_3_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
             sps_B_3_in_axes3_zx*sps_J_group_3_in_axes3_xy -
-            sps_acc_4_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z
+            sps_S_ddot_in_axes3_y*sps_h_4_in_spec3_x
         )
         sps_mu_3_in_axes3_y = (
         sps_B_3_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
             sps_B_3_in_axes3_zy*sps_J_group_3_in_axes3_xy +
-            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            sps_S_ddot_in_axes3_x*sps_h_4_in_spec3_x - sps_mu_3_t_3 - sps_mu_3_t_6 -
             sps_B_3_in_axes3_xy*sps_J_group_3_in_axes3_yz -
-            sps_B_3_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_J_group_3_in_axes3_xz*(sps_phi_4_t -
-            sps_mu_3_t) - sps_acc_4_in_axes3_z*sps_h_4_in_spec3_y -
-            sps_g_in_axes3_x*sps_h_3_in_spec3_x
+            sps_B_3_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_S_ddot_in_axes3_z*sps_h_4_in_spec3_y
         )
         sps_mu_3_in_axes3_z = (
-        sps_B_3_in_axes3_xz*sps_J_group_3_in_axes3_yz +
-            sps_B_3_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_J_group_3_in_axes3_xy*(sps_phi_4_t -
-            sps_phi_4_t_2) + sps_acc_4_in_axes3_y*sps_h_4_in_spec3_y +
-            sps_g_in_axes3_x*sps_h_3_in_spec3_z - sps_B_3_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
+        sps_mu_3_t_4 + sps_B_3_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            sps_B_3_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_S_ddot_in_axes3_y*sps_h_4_in_spec3_y
+            - sps_mu_3_t_7 - sps_B_3_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
             sps_B_3_in_axes3_yz*sps_J_group_3_in_axes3_xz -
-            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y
+            sps_S_ddot_in_axes3_x*sps_h_4_in_spec3_z
         )
         sps_mu_3_in_axes2_z = sps_c_3*sps_mu_3_in_axes3_x - sps_mu_3_in_axes3_y*sps_s_3
         # (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight
@@ -3892,15 +3884,16 @@ def _run_required(m, X, V, A):
             sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y
         )
         # (sps-c) leg force on the platform without actuation and without the mass at the connection point
+        sps_c_t = sps_h_4_in_spec3_y*(sps_W_3_t_2 + sps_mu_3_t)
+        sps_c_t_2 = sps_h_4_in_spec3_z*(sps_W_3_t + sps_mu_3_t)
         sps_c_in_axes3_x = (
-        sps_h_4_in_spec3_y*(sps_mu_3_t + sps_phi_4_t_2) - inv_sps_w_1_t*(sps_Gamma_1*sps_v_2_t +
-            sps_mu_3_in_axes2_z*sps_v_1_in_axes3_y) - sps_B_3_in_axes3_xy*sps_h_4_in_spec3_z -
-            sps_B_3_in_axes3_xz*sps_h_4_in_spec3_x
+        sps_c_t - inv_sps_w_1_t*(sps_Gamma_1*sps_v_2_t + sps_mu_3_in_axes2_z*sps_v_1_in_axes3_y) -
+            sps_B_3_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_in_axes3_xz*sps_h_4_in_spec3_x
         )
         sps_c_in_axes3_y = (
-        inv_sps_w_1_t*(sps_mu_3_in_axes2_z*sps_v_1_in_axes3_x - sps_Gamma_1*sps_v_2_in_axes3_x) +
-            sps_h_4_in_spec3_z*(sps_mu_3_t + sps_phi_4_t) - sps_B_3_in_axes3_yx*sps_h_4_in_spec3_y
-            - sps_B_3_in_axes3_yz*sps_h_4_in_spec3_x
+        sps_c_t_2 + inv_sps_w_1_t*(sps_mu_3_in_axes2_z*sps_v_1_in_axes3_x -
+            sps_Gamma_1*sps_v_2_in_axes3_x) - sps_B_3_in_axes3_yx*sps_h_4_in_spec3_y -
+            sps_B_3_in_axes3_yz*sps_h_4_in_spec3_x
         )
         sps_c_x = (
         axis_x_sps_axes3_x*sps_c_in_axes3_x + axis_y_sps_axes3_x*sps_c_in_axes3_y -
@@ -4015,18 +4008,18 @@ def _run_inverse_kinematics(m, X):
         ) = k
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         # (sps-S) from the base point to the connection point
-        sps_S_x = (
-        t_x + R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z -
-            sps_base_point_x
+        sps_q_x = (
+        R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        sps_S_y = (
-        t_y + R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z -
-            sps_base_point_y
+        sps_q_y = (
+        R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        sps_S_z = (
-        t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z -
-            sps_base_point_z
+        sps_q_z = (
+        R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
+        sps_S_x = sps_q_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_z + t_z - sps_base_point_z
         sps_S_in_turn1_x = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
@@ -4039,15 +4032,22 @@ def _run_inverse_kinematics(m, X):
         # (sps-root_1) amplitude, the length across axis 1, with the sign of the branch
         sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y
         sps_root_1 = sps_branch_1*sqrt(sps_root_1_t)
-        # (sps-q_1) displacement of joint 1
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
         inv_sps_root_1 = 1.0/sps_root_1
-        sps_q_1 = atan2(inv_sps_root_1*sps_S_in_turn1_y, inv_sps_root_1*sps_S_in_turn1_x)
+        sps_c_1 = inv_sps_root_1*sps_S_in_turn1_x
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_S_in_turn1_y
+        # (sps-q_1) displacement of joint 1
+        sps_q_1 = atan2(sps_s_1, sps_c_1)
         # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
         sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
         sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
-        # (sps-q_2) displacement of joint 2
+        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_q_2 = atan2(-inv_sps_root_2*sps_S_in_turn1_z, inv_sps_root_2*sps_root_1)
+        sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-q_2) displacement of joint 2
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
+        sps_q_2 = atan2(-sps_e_1_in_axes2_y, sps_c_2)
         ok = (
         ok & (abs(sps_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(sps_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
@@ -4168,25 +4168,32 @@ def _run_joint_rates(m, X, V):
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
         sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-q_2) displacement of joint 2
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         # (sps-S_dot) velocity of the connection point
-        sps_S_dot_x = t_dot_x + omega_y*sps_q_z - omega_z*sps_q_y
-        sps_S_dot_y = t_dot_y + omega_z*sps_q_x - omega_x*sps_q_z
-        sps_S_dot_z = t_dot_z + omega_x*sps_q_y - omega_y*sps_q_x
+        sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
+        sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
+        sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x
+        sps_S_dot_x = sps_S_dot_t + t_dot_x
+        sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
+        sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
         # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_e_1_in_axes3_x = sps_c_2*sps_s_3
         sps_e_1_in_axes3_y = sps_c_2*sps_c_3
         sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
-        sps_v_1_in_axes3_y = -sps_c_2*sps_root_2*sps_s_3
+        sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2
         # (sps-v_2) velocity of the connection point per rate of joint 2
         sps_v_2_in_axes3_x = -sps_root_2*sps_s_3
         sps_v_2_t = sps_c_3*sps_root_2
         # (sps-w_1) reciprocal vector 1
         sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
+        inv_sps_w_1_t = 1.0/sps_w_1_t
         # (sps-w_4) reciprocal vector 3
         sps_w_4_x = inv_sps_root_2*sps_S_x
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_S_dot_rest_t = inv_sps_root_2*sps_S_in_turn1_z*sps_c_3
+        sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y
         sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1
         sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3
         axis_y_sps_axes3_x = (
@@ -4201,10 +4208,12 @@ def _run_joint_rates(m, X, V):
         sps_S_dot_rest_t_2*sps_base_frame_zx + sps_S_dot_rest_t_3*sps_base_frame_zy +
             sps_base_frame_zz*sps_e_1_in_axes3_y
         )
+        axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
+        axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
+        axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y - axis_y_sps_axes3_y*sps_w_4_x
         sps_S_dot_rest_in_axes3_x = (
-        sps_S_dot_x*(axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y) +
-            sps_S_dot_y*(axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z) +
-            sps_S_dot_z*(axis_y_sps_axes3_x*sps_w_4_y - axis_y_sps_axes3_y*sps_w_4_x)
+        axis_x_sps_axes3_x*sps_S_dot_x + axis_x_sps_axes3_y*sps_S_dot_y +
+            axis_x_sps_axes3_z*sps_S_dot_z
         )
         sps_S_dot_rest_in_axes3_y = (
         axis_y_sps_axes3_x*sps_S_dot_x + axis_y_sps_axes3_y*sps_S_dot_y +
@@ -4214,7 +4223,6 @@ def _run_joint_rates(m, X, V):
         sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y + sps_S_dot_z*sps_w_4_z
         )
         # (sps-qd_1) rate of joint 1
-        inv_sps_w_1_t = 1.0/sps_w_1_t
         sps_qd_1 = (
         inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
             sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x)
@@ -4240,7 +4248,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 762 mul, 474 add, 18 div, 12 sqrt, 12 trig
+# joint_accelerations: 750 mul, 465 add, 18 div, 12 sqrt, 12 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -4309,6 +4317,23 @@ def _run_joint_accelerations(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
@@ -4359,6 +4384,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
         sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-q_2) displacement of joint 2
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         # (sps-S_dot) velocity of the connection point
         sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
         sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
@@ -4367,20 +4394,21 @@ def _run_joint_accelerations(m, X, V, A):
         sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
         sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
         # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_e_1_in_axes3_x = sps_c_2*sps_s_3
         sps_e_1_in_axes3_y = sps_c_2*sps_c_3
         sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
-        sps_v_1_in_axes3_y = -sps_c_2*sps_root_2*sps_s_3
+        sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2
         # (sps-v_2) velocity of the connection point per rate of joint 2
         sps_v_2_in_axes3_x = -sps_root_2*sps_s_3
         sps_v_2_t = sps_c_3*sps_root_2
         # (sps-w_1) reciprocal vector 1
         sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
+        inv_sps_w_1_t = 1.0/sps_w_1_t
         # (sps-w_4) reciprocal vector 3
         sps_w_4_x = inv_sps_root_2*sps_S_x
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y
         sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1
         sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3
@@ -4411,7 +4439,6 @@ def _run_joint_accelerations(m, X, V, A):
         sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y + sps_S_dot_z*sps_w_4_z
         )
         # (sps-qd_1) rate of joint 1
-        inv_sps_w_1_t = 1.0/sps_w_1_t
         sps_qd_1 = (
         inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
             sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x)
@@ -4429,43 +4456,49 @@ def _run_joint_accelerations(m, X, V, A):
         sps_omega_2_in_axes3_y = sps_c_3*sps_omega_1_in_axes2_x + sps_qd_2_t*sps_s_3
         # (sps-omega_3) angular velocity of link 3
         sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3
-        # (sps-a_p) acceleration of the connection point without its centripetal part
-        sps_a_p_x = t_ddot_x + alpha_y*sps_q_z - alpha_z*sps_q_y
-        sps_a_p_y = t_ddot_y + alpha_z*sps_q_x - alpha_x*sps_q_z
-        sps_a_p_z = t_ddot_z + alpha_x*sps_q_y - alpha_y*sps_q_x
+        # (sps-W_3) centripetal tensor of link 3
+        sps_W_3_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
+        sps_W_3_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
+        sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z
+        sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z
+        sps_W_3_t_3 = sps_W_3_t + sps_W_3_t_2
         # (sps-S_ddot) acceleration of the connection point
-        sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
-        sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
-        sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
+        sps_S_ddot_x = t_ddot_x + B_p_xy*sps_q_y + B_p_xz*sps_q_z - W_p_t_4*sps_q_x
+        sps_S_ddot_y = t_ddot_y + B_p_yx*sps_q_x + B_p_yz*sps_q_z - W_p_t_5*sps_q_y
+        sps_S_ddot_z = t_ddot_z + B_p_zx*sps_q_x + B_p_zy*sps_q_y - W_p_t_6*sps_q_z
+        sps_S_ddot_in_axes3_x = (
+        axis_x_sps_axes3_x*sps_S_ddot_x + axis_x_sps_axes3_y*sps_S_ddot_y +
+            axis_x_sps_axes3_z*sps_S_ddot_z
+        )
+        sps_S_ddot_in_axes3_y = (
+        axis_y_sps_axes3_x*sps_S_ddot_x + axis_y_sps_axes3_y*sps_S_ddot_y +
+            axis_y_sps_axes3_z*sps_S_ddot_z
+        )
+        sps_S_ddot_in_axes3_z = (
+        sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y + sps_S_ddot_z*sps_w_4_z
+        )
         # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
         sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t
+        # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3
+        sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3
         # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
-        sps_beta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3 - sps_s_3*sps_zeta_2_t
-        sps_beta_3_in_axes3_y = -sps_c_3*sps_zeta_2_t - sps_omega_2_in_axes3_x*sps_yd_3
+        sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x - sps_s_3*sps_zeta_2_t
+        sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_c_3*sps_zeta_2_t
         # (sps-bias) acceleration of the connection point at zero joint accelerations
         sps_bias_t = 2.0*sps_S_dot_rest_in_axes3_z
         sps_bias_in_axes3_x = (
-        sps_bias_t*sps_omega_2_in_axes3_y + sps_root_2*(sps_beta_3_in_axes3_y +
-            sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z)
+        sps_bias_t*sps_omega_2_in_axes3_y + sps_root_2*(sps_W_3_in_axes3_xz +
+            sps_beta_3_in_axes3_y)
         )
         sps_bias_in_axes3_y = (
-        sps_root_2*(sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z - sps_beta_3_in_axes3_x) -
+        sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x) -
             sps_bias_t*sps_omega_2_in_axes3_x
         )
         # (sps-rel) acceleration of the connection point left to the joint accelerations
-        sps_rel_in_axes3_x = (
-        axis_x_sps_axes3_x*sps_S_ddot_x + axis_x_sps_axes3_y*sps_S_ddot_y +
-            axis_x_sps_axes3_z*sps_S_ddot_z - sps_bias_in_axes3_x
-        )
-        sps_rel_in_axes3_y = (
-        axis_y_sps_axes3_x*sps_S_ddot_x + axis_y_sps_axes3_y*sps_S_ddot_y +
-            axis_y_sps_axes3_z*sps_S_ddot_z - sps_bias_in_axes3_y
-        )
-        sps_rel_in_axes3_z = (
-        sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y + sps_S_ddot_z*sps_w_4_z +
-            sps_root_2*(sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x +
-            sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y)
-        )
+        sps_rel_in_axes3_x = sps_S_ddot_in_axes3_x - sps_bias_in_axes3_x
+        sps_rel_in_axes3_y = sps_S_ddot_in_axes3_y - sps_bias_in_axes3_y
+        sps_rel_in_axes3_z = sps_S_ddot_in_axes3_z + sps_W_3_t_3*sps_root_2
         # (sps-qdd_1) acceleration of joint 1
         sps_qdd_1 = (
         inv_sps_w_1_t*(sps_rel_in_axes3_x*sps_v_2_t + sps_rel_in_axes3_y*sps_v_2_in_axes3_x)
@@ -4491,7 +4524,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 1218 mul, 906 add, 18 div, 12 sqrt, 12 trig
+# legs: 1206 mul, 897 add, 18 div, 12 sqrt, 12 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -4562,6 +4595,23 @@ def _run_legs(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz, sps_J_group_3_in_axes3_yz,
@@ -4569,9 +4619,9 @@ def _run_legs(m, X, V, A):
             sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
             sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
             sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
-            sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y, sps_h_3_in_spec3_z,
-            sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z, sps_link4_mass,
-            sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
+            sps_branch_2, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z,
+            sps_h_group_3_in_axes3_x, sps_h_group_3_in_axes3_y, sps_h_group_3_in_axes3_z,
+            sps_link4_mass, sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
@@ -4616,6 +4666,8 @@ def _run_legs(m, X, V, A):
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
         sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-q_2) displacement of joint 2
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         # (sps-S_dot) velocity of the connection point
         sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
         sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
@@ -4633,12 +4685,12 @@ def _run_legs(m, X, V, A):
         sps_v_2_t = sps_c_3*sps_root_2
         # (sps-w_1) reciprocal vector 1
         sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
+        inv_sps_w_1_t = 1.0/sps_w_1_t
         # (sps-w_4) reciprocal vector 3
         sps_w_4_x = inv_sps_root_2*sps_S_x
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y
         sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1
         sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3
@@ -4669,7 +4721,6 @@ def _run_legs(m, X, V, A):
         sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y + sps_S_dot_z*sps_w_4_z
         )
         # (sps-qd_1) rate of joint 1
-        inv_sps_w_1_t = 1.0/sps_w_1_t
         sps_qd_1 = (
         inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
             sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x)
@@ -4688,17 +4739,16 @@ def _run_legs(m, X, V, A):
         # (sps-omega_3) angular velocity of link 3
         sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3
         # (sps-W_3) centripetal tensor of link 3
+        sps_W_3_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
+        sps_W_3_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
         sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y
         sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z
         sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z
-        # (sps-a_p) acceleration of the connection point without its centripetal part
-        sps_a_p_x = t_ddot_x + alpha_y*sps_q_z - alpha_z*sps_q_y
-        sps_a_p_y = t_ddot_y + alpha_z*sps_q_x - alpha_x*sps_q_z
-        sps_a_p_z = t_ddot_z + alpha_x*sps_q_y - alpha_y*sps_q_x
+        sps_W_3_t_3 = sps_W_3_t + sps_W_3_t_2
         # (sps-S_ddot) acceleration of the connection point
-        sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
-        sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
-        sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
+        sps_S_ddot_x = t_ddot_x + B_p_xy*sps_q_y + B_p_xz*sps_q_z - W_p_t_4*sps_q_x
+        sps_S_ddot_y = t_ddot_y + B_p_yx*sps_q_x + B_p_yz*sps_q_z - W_p_t_5*sps_q_y
+        sps_S_ddot_z = t_ddot_z + B_p_zx*sps_q_x + B_p_zy*sps_q_y - W_p_t_6*sps_q_z
         sps_S_ddot_in_axes3_x = (
         axis_x_sps_axes3_x*sps_S_ddot_x + axis_x_sps_axes3_y*sps_S_ddot_y +
             axis_x_sps_axes3_z*sps_S_ddot_z
@@ -4707,8 +4757,12 @@ def _run_legs(m, X, V, A):
         axis_y_sps_axes3_x*sps_S_ddot_x + axis_y_sps_axes3_y*sps_S_ddot_y +
             axis_y_sps_axes3_z*sps_S_ddot_z
         )
+        sps_S_ddot_in_axes3_z = (
+        sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y + sps_S_ddot_z*sps_w_4_z
+        )
         # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
         sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t
+        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
         # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
         sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3
         sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3
@@ -4739,7 +4793,7 @@ def _run_legs(m, X, V, A):
         )
         # (sps-alpha_2) angular acceleration of link 2
         sps_alpha_2_in_axes2_x = sps_c_2*sps_qdd_1 - sps_zeta_2_t
-        sps_alpha_2_in_axes2_y = sps_e_1_in_axes2_y*sps_qdd_1 + sps_omega_1_in_axes2_x*sps_qd_2_t
+        sps_alpha_2_in_axes2_y = sps_zeta_2_in_axes2_y + sps_e_1_in_axes2_y*sps_qdd_1
         # (sps-alpha_3) angular acceleration of link 3
         sps_alpha_3_in_axes3_x = (
         sps_zeta_3_in_axes3_x + sps_alpha_2_in_axes2_x*sps_s_3 - sps_c_3*sps_qdd_2_t
@@ -4765,38 +4819,47 @@ def _run_legs(m, X, V, A):
         sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y + gravity_z*sps_w_4_z
         sps_acc_4_in_axes3_x = sps_S_ddot_in_axes3_x - sps_g_in_axes3_x
         sps_acc_4_in_axes3_y = sps_S_ddot_in_axes3_y - sps_g_in_axes3_y
-        sps_acc_4_in_axes3_z = (
-        sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y + sps_S_ddot_z*sps_w_4_z -
-            sps_g_in_axes3_z
+        sps_acc_4_in_axes3_z = sps_S_ddot_in_axes3_z - sps_g_in_axes3_z
+        # (sps-phi_4) inertia force of link 4 from its turning about its reference point
+        sps_phi_4_t = sps_W_3_t_3*sps_h_4_in_spec3_x
+        sps_phi_4_in_axes3_z = (
+        sps_B_3_in_axes3_zx*sps_h_4_in_spec3_y + sps_B_3_in_axes3_zy*sps_h_4_in_spec3_z -
+            sps_phi_4_t
         )
         # (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        sps_mu_3_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
-        sps_mu_3_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
-        sps_mu_3_t_3 = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z
+        sps_mu_3_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z
+        sps_mu_3_t_2 = sps_J_group_3_in_axes3_yz*(sps_W_3_t_2 - sps_mu_3_t)
+        sps_mu_3_t_3 = sps_J_group_3_in_axes3_xz*(sps_W_3_t - sps_mu_3_t)
+        sps_mu_3_t_4 = sps_J_group_3_in_axes3_xy*(sps_W_3_t - sps_W_3_t_2)
+        sps_mu_3_t_5 = (
+        sps_g_in_axes3_z*sps_h_group_3_in_axes3_y - sps_g_in_axes3_y*sps_h_group_3_in_axes3_z
+        )
+        sps_mu_3_t_6 = (
+        sps_g_in_axes3_x*sps_h_group_3_in_axes3_z - sps_g_in_axes3_z*sps_h_group_3_in_axes3_x
+        )
+        sps_mu_3_t_7 = (
+        sps_g_in_axes3_y*sps_h_group_3_in_axes3_x - sps_g_in_axes3_x*sps_h_group_3_in_axes3_y
+        )
         sps_mu_3_in_axes3_x = (
-        sps_B_3_in_axes3_yx*sps_J_group_3_in_axes3_xz +
-            sps_B_3_in_axes3_zy*sps_Sigma_3_in_axes3_yy + sps_J_group_3_in_axes3_yz*(sps_mu_3_t_2
-            - sps_mu_3_t_3) + sps_acc_4_in_axes3_z*sps_h_4_in_spec3_z +
-            sps_g_in_axes3_y*sps_h_3_in_spec3_x - sps_B_3_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+        sps_mu_3_t_2 + sps_B_3_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            sps_B_3_in_axes3_zy*sps_Sigma_3_in_axes3_yy + sps_S_ddot_in_axes3_z*sps_h_4_in_spec3_z
+            - sps_mu_3_t_5 - sps_B_3_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
             sps_B_3_in_axes3_zx*sps_J_group_3_in_axes3_xy -
-            sps_acc_4_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z
+            sps_S_ddot_in_axes3_y*sps_h_4_in_spec3_x
         )
         sps_mu_3_in_axes3_y = (
         sps_B_3_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
             sps_B_3_in_axes3_zy*sps_J_group_3_in_axes3_xy +
-            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            sps_S_ddot_in_axes3_x*sps_h_4_in_spec3_x - sps_mu_3_t_3 - sps_mu_3_t_6 -
             sps_B_3_in_axes3_xy*sps_J_group_3_in_axes3_yz -
-            sps_B_3_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_J_group_3_in_axes3_xz*(sps_mu_3_t -
-            sps_mu_3_t_3) - sps_acc_4_in_axes3_z*sps_h_4_in_spec3_y -
-            sps_g_in_axes3_x*sps_h_3_in_spec3_x
+            sps_B_3_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_S_ddot_in_axes3_z*sps_h_4_in_spec3_y
         )
         sps_mu_3_in_axes3_z = (
-        sps_B_3_in_axes3_xz*sps_J_group_3_in_axes3_yz +
-            sps_B_3_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_J_group_3_in_axes3_xy*(sps_mu_3_t -
-            sps_mu_3_t_2) + sps_acc_4_in_axes3_y*sps_h_4_in_spec3_y +
-            sps_g_in_axes3_x*sps_h_3_in_spec3_z - sps_B_3_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
+        sps_mu_3_t_4 + sps_B_3_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            sps_B_3_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_S_ddot_in_axes3_y*sps_h_4_in_spec3_y
+            - sps_mu_3_t_7 - sps_B_3_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
             sps_B_3_in_axes3_yz*sps_J_group_3_in_axes3_xz -
-            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y
+            sps_S_ddot_in_axes3_x*sps_h_4_in_spec3_z
         )
         sps_mu_3_in_axes2_z = sps_c_3*sps_mu_3_in_axes3_x - sps_mu_3_in_axes3_y*sps_s_3
         # (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight
@@ -4805,23 +4868,21 @@ def _run_legs(m, X, V, A):
             sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y
         )
         # (sps-c) leg force on the platform without actuation and without the mass at the connection point
+        sps_c_t = sps_h_4_in_spec3_y*(sps_W_3_t_2 + sps_mu_3_t)
+        sps_c_t_2 = sps_h_4_in_spec3_z*(sps_W_3_t + sps_mu_3_t)
         sps_c_in_axes3_x = (
-        sps_h_4_in_spec3_y*(sps_mu_3_t_2 + sps_mu_3_t_3) - inv_sps_w_1_t*(sps_Gamma_1*sps_v_2_t +
-            sps_mu_3_in_axes2_z*sps_v_1_in_axes3_y) - sps_B_3_in_axes3_xy*sps_h_4_in_spec3_z -
-            sps_B_3_in_axes3_xz*sps_h_4_in_spec3_x
+        sps_c_t - inv_sps_w_1_t*(sps_Gamma_1*sps_v_2_t + sps_mu_3_in_axes2_z*sps_v_1_in_axes3_y) -
+            sps_B_3_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_in_axes3_xz*sps_h_4_in_spec3_x
         )
         sps_c_in_axes3_y = (
-        inv_sps_w_1_t*(sps_mu_3_in_axes2_z*sps_v_1_in_axes3_x - sps_Gamma_1*sps_v_2_in_axes3_x) +
-            sps_h_4_in_spec3_z*(sps_mu_3_t + sps_mu_3_t_3) -
-            sps_B_3_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_in_axes3_yz*sps_h_4_in_spec3_x
+        sps_c_t_2 + inv_sps_w_1_t*(sps_mu_3_in_axes2_z*sps_v_1_in_axes3_x -
+            sps_Gamma_1*sps_v_2_in_axes3_x) - sps_B_3_in_axes3_yx*sps_h_4_in_spec3_y -
+            sps_B_3_in_axes3_yz*sps_h_4_in_spec3_x
         )
         # (sps-c_true) leg force on the platform without actuation, the last link's mass included
         sps_c_true_in_axes3_x = sps_c_in_axes3_x - sps_acc_4_in_axes3_x*sps_link4_mass
         sps_c_true_in_axes3_y = sps_c_in_axes3_y - sps_acc_4_in_axes3_y*sps_link4_mass
-        sps_c_true_in_axes3_z = (
-        sps_h_4_in_spec3_x*(sps_mu_3_t + sps_mu_3_t_2) - sps_B_3_in_axes3_zx*sps_h_4_in_spec3_y -
-            sps_B_3_in_axes3_zy*sps_h_4_in_spec3_z - sps_acc_4_in_axes3_z*sps_link4_mass
-        )
+        sps_c_true_in_axes3_z = -sps_phi_4_in_axes3_z - sps_acc_4_in_axes3_z*sps_link4_mass
         sps_c_true_x = (
         axis_x_sps_axes3_x*sps_c_true_in_axes3_x + axis_y_sps_axes3_x*sps_c_true_in_axes3_y +
             sps_c_true_in_axes3_z*sps_w_4_x
@@ -4897,12 +4958,14 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
+    gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
+        m_star*t_z)
     )
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
@@ -4918,18 +4981,18 @@ def _run_potential(m, X):
         ) = k
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         # (sps-S) from the base point to the connection point
-        sps_S_x = (
-        t_x + R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z -
-            sps_base_point_x
+        sps_q_x = (
+        R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        sps_S_y = (
-        t_y + R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z -
-            sps_base_point_y
+        sps_q_y = (
+        R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        sps_S_z = (
-        t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z -
-            sps_base_point_z
+        sps_q_z = (
+        R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
+        sps_S_x = sps_q_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_z + t_z - sps_base_point_z
         sps_S_in_turn1_x = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
@@ -4957,8 +5020,9 @@ def _run_potential(m, X):
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
         sps_c_2 = inv_sps_root_2*sps_root_1
-        # (potential) potential energy
+        # (sps-q_2) displacement of joint 2
         sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
+        # (potential) potential energy
         sps_potential_t_7 = sps_c_1*sps_potential_t + sps_potential_t_2*sps_s_1
         sps_potential_t_8 = sps_c_1*sps_potential_t_2 - sps_potential_t*sps_s_1
         sps_potential_t_9 = sps_c_2*sps_potential_t_3 - sps_e_1_in_axes2_y*sps_potential_t_7
@@ -5077,17 +5141,23 @@ def _run_condition(m, X):
         sps_s_3 = sin(sps_y_3_extra)
         # (sps-root_1) amplitude, the length across axis 1, with the sign of the branch
         sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y
+        sps_root_1 = sps_branch_1*sqrt(sps_root_1_t)
         # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
         sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
         sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2 = inv_sps_root_2*sps_branch_1*sqrt(sps_root_1_t)
+        sps_c_2 = inv_sps_root_2*sps_root_1
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_e_1_in_axes3_x = sps_c_2*sps_s_3
+        sps_e_1_in_axes3_y = sps_c_2*sps_c_3
+        sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
+        sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_in_axes3_x = -sps_root_2*sps_s_3
+        sps_v_2_t = sps_c_3*sps_root_2
         # (sps-w_1) reciprocal vector 1
-        sps_w_1_t = (
-        sps_c_2*sps_c_3*sps_c_3*sps_root_2*sps_root_2 +
-            sps_c_2*sps_root_2*sps_root_2*sps_s_3*sps_s_3
-        )
+        sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
         # (sps-w_4) reciprocal vector 3
         sps_w_4_x = inv_sps_root_2*sps_S_x
         sps_w_4_y = inv_sps_root_2*sps_S_y
@@ -5395,11 +5465,11 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_3 = q[[3, 7, 11, 15, 19, 23]]
-    gap = q_actuated - q_of_inverse_kinematics_from_3
-    return (gap,)
+    residual = q_actuated - q_of_inverse_kinematics_from_3
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -5408,7 +5478,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

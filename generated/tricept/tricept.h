@@ -128,9 +128,10 @@ typedef struct {
             ups_base_frame_zz[4], ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4],
             ups_branch_1[4], ups_branch_2[4], ups_h_2_in_spec2_x[4], ups_h_2_in_spec2_y[4],
             ups_h_2_in_spec2_z[4], ups_h_3_in_spec2_x[4], ups_h_3_in_spec2_y[4],
-            ups_h_3_in_spec2_z[4], ups_link2_mass[4], ups_link3_mass[4], ups_platform_point_x[4],
-            ups_platform_point_y[4], ups_platform_point_z[4], ups_potential_t[4],
-            ups_potential_t_2[4], ups_potential_t_3[4];
+            ups_h_3_in_spec2_z[4], ups_h_group_2_in_axes2_x[4], ups_h_group_2_in_axes2_y[4],
+            ups_h_group_2_in_axes2_z[4], ups_link2_mass[4], ups_link3_mass[4],
+            ups_platform_point_x[4], ups_platform_point_y[4], ups_platform_point_z[4],
+            ups_potential_t[4], ups_potential_t_2[4], ups_potential_t_3[4];
     /* 1 legs of type tube */
     tricept_real tube_J_group_2_in_axes2_xx[1], tube_J_group_2_in_axes2_xy[1],
             tube_J_group_2_in_axes2_xz[1], tube_J_group_2_in_axes2_yy[1],
@@ -176,7 +177,7 @@ int tricept_M(const tricept_model *model, const tricept_real *X, tricept_real *M
 size_t tricept_M_batch(const tricept_model *model, size_t n, const tricept_real *X, tricept_real
     *M, int *status);
 
-/* Velocity and gravity terms Z. 1091 mul, 783 add, 15 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1100 mul, 780 add, 15 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int tricept_Z(const tricept_model *model, const tricept_real *X, const tricept_real *V,
     tricept_real *Z);
@@ -221,21 +222,21 @@ int tricept_joint_rates(const tricept_model *model, const tricept_real *X, const
 size_t tricept_joint_rates_batch(const tricept_model *model, size_t n, const tricept_real *X,
     const tricept_real *V, tricept_real *rates, int *status);
 
-/* Accelerations of all joints. 737 mul, 470 add, 15 div, 14 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 731 mul, 467 add, 15 div, 14 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int tricept_joint_accelerations(const tricept_model *model, const tricept_real *X, const
     tricept_real *V, const tricept_real *A, tricept_real *accelerations);
 size_t tricept_joint_accelerations_batch(const tricept_model *model, size_t n, const tricept_real
     *X, const tricept_real *V, const tricept_real *A, tricept_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1974 mul, 1448 add, 15 div, 14 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1947 mul, 1421 add, 15 div, 14 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tricept_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real *V,
     tricept_real *M, tricept_real *Z, tricept_real *H);
 size_t tricept_dynamics_batch(const tricept_model *model, size_t n, const tricept_real *X, const
     tricept_real *V, tricept_real *M, tricept_real *Z, tricept_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1225 mul, 902 add, 15 div, 14 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1210 mul, 884 add, 15 div, 14 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU), lambda (NC). */
 int tricept_inverse_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real
@@ -245,7 +246,7 @@ size_t tricept_inverse_dynamics_batch(const tricept_model *model, size_t n, cons
     const tricept_real *V, const tricept_real *A, const tricept_real *wrench, tricept_real *tau,
     tricept_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1974 mul, 1448 add, 15 div, 14
+/* Acceleration A under the actuator forces tau and the wrench. 1947 mul, 1421 add, 15 div, 14
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV), lambda (NC). */
 int tricept_forward_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real
@@ -265,7 +266,7 @@ size_t tricept_complete_acceleration_batch(const tricept_model *model, size_t n,
     tricept_real *completed, int *status);
 
 /* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
-   give the forces of inverse_dynamics. 1087 mul, 764 add, 15 div, 14 sqrt, 0 trig; inverse
+   give the forces of inverse_dynamics. 1078 mul, 764 add, 15 div, 14 sqrt, 0 trig; inverse
    dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (4 x 6). */
 int tricept_leg_reactions(const tricept_model *model, const tricept_real *X, const tricept_real
     *V, const tricept_real *A, const tricept_real *wrench, tricept_real *forces);
@@ -370,7 +371,7 @@ int tricept_actuator_rates(const tricept_model *model, const tricept_real *X, co
 size_t tricept_actuator_rates_batch(const tricept_model *model, size_t n, const tricept_real *X,
     const tricept_real *V, tricept_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 737 mul, 470 add, 15 div, 14 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 731 mul, 467 add, 15 div, 14 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int tricept_actuator_accelerations(const tricept_model *model, const tricept_real *X, const
     tricept_real *V, const tricept_real *A, tricept_real *accelerations);

@@ -144,9 +144,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -208,6 +208,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -256,7 +280,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -266,7 +290,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -279,7 +303,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -296,16 +320,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -313,7 +337,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1455,10 +1488,28 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
-        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
-        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+    real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
+        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
+
+INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
+{
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real W_p_t = omega_x*omega_x;
+    const real omega_y = V[4*w + k];
+    const real W_p_t_2 = omega_y*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_t_3 = omega_z*omega_z;
+    v->W_p_t_4 = W_p_t_2 + W_p_t_3;
+    v->W_p_xy = omega_x*omega_y;
+    v->W_p_xz = omega_x*omega_z;
+    v->W_p_t_5 = W_p_t + W_p_t_3;
+    v->W_p_yz = omega_y*omega_z;
+    v->W_p_t_6 = W_p_t + W_p_t_2;
+}
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
@@ -1468,10 +1519,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_5 = X[5*w + k];
     const real X_6 = X[6*w + k];
     const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-    const real quaternion_scale = 2/quaternion_norm2;
-    const real quaternion_sx = X_3*quaternion_scale;
-    const real quaternion_sy = X_4*quaternion_scale;
-    const real quaternion_sz = X_5*quaternion_scale;
+    v->quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*v->quaternion_scale;
+    const real quaternion_sy = X_4*v->quaternion_scale;
+    const real quaternion_sz = X_5*v->quaternion_scale;
     const real quaternion_wx = X_6*quaternion_sx;
     const real quaternion_wy = X_6*quaternion_sy;
     const real quaternion_wz = X_6*quaternion_sz;
@@ -1481,53 +1532,22 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real quaternion_yy = X_4*quaternion_sy;
     const real quaternion_yz = X_4*quaternion_sz;
     const real quaternion_zz = X_5*quaternion_sz;
-    const real R_xx = 1 - quaternion_yy - quaternion_zz;
-    const real R_xy = quaternion_xy - quaternion_wz;
-    const real R_xz = quaternion_wy + quaternion_xz;
-    const real R_yx = quaternion_wz + quaternion_xy;
-    const real R_yy = 1 - quaternion_xx - quaternion_zz;
-    const real R_yz = quaternion_yz - quaternion_wx;
-    const real R_zx = quaternion_xz - quaternion_wy;
-    const real R_zy = quaternion_wx + quaternion_yz;
-    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    v->R_xx = 1 - quaternion_yy - quaternion_zz;
+    v->R_xy = quaternion_xy - quaternion_wz;
+    v->R_xz = quaternion_wy + quaternion_xz;
+    v->R_yx = quaternion_wz + quaternion_xy;
+    v->R_yy = 1 - quaternion_xx - quaternion_zz;
+    v->R_yz = quaternion_yz - quaternion_wx;
+    v->R_zx = quaternion_xz - quaternion_wy;
+    v->R_zy = quaternion_wx + quaternion_yz;
+    v->R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
-        R_xx*m->h_star_in_platform_x;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
-        R_yy*m->h_star_in_platform_y;
-    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
-        R_zz*m->h_star_in_platform_z;
-    v->quaternion_scale = quaternion_scale;
-    v->R_xx = R_xx;
-    v->R_xy = R_xy;
-    v->R_xz = R_xz;
-    v->R_yx = R_yx;
-    v->R_yy = R_yy;
-    v->R_yz = R_yz;
-    v->R_zx = R_zx;
-    v->R_zy = R_zy;
-    v->R_zz = R_zz;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
-    v->h_star_z = h_star_z;
-}
-
-INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
-{
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
-    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
-    v->omega_in_platform_x = omega_in_platform_x;
-    v->omega_in_platform_y = omega_in_platform_y;
-    v->omega_in_platform_z = omega_in_platform_z;
-}
-
-INLINE void stage_M_dynamics(const prepared *m, values *v)
-{
+    v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
+        v->R_xx*m->h_star_in_platform_x;
+    v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
+        v->R_yy*m->h_star_in_platform_y;
+    v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
+        v->R_zz*m->h_star_in_platform_z;
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_6*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
@@ -1539,23 +1559,31 @@ INLINE void stage_M_dynamics(const prepared *m, values *v)
     const real J_star_t_5 = m->J_star_t_8*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_7 = m->J_star_t_8*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_9 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_9;
-    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_9;
+    v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
-    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+    v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_7*v->R_xz;
     const real J_star_t_10 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_10;
-    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_10;
+    v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_7*v->R_yz;
     const real J_star_t_11 = J_star_t_3*v->R_zy - J_star_t_7*v->R_zz;
-    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_11;
-    v->J_star_xx = J_star_xx;
-    v->J_star_xy = J_star_xy;
-    v->J_star_xz = J_star_xz;
-    v->J_star_yy = J_star_yy;
-    v->J_star_yz = J_star_yz;
-    v->J_star_zz = J_star_zz;
+    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_11;
+}
+
+INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
+{
+    /* (B_p) acceleration tensor of the platform */
+    const real alpha_z = A[5*w + k];
+    v->B_p_xy = v->W_p_xy - alpha_z;
+    const real alpha_y = A[4*w + k];
+    v->B_p_xz = alpha_y + v->W_p_xz;
+    v->B_p_yx = alpha_z + v->W_p_xy;
+    const real alpha_x = A[3*w + k];
+    v->B_p_yz = v->W_p_yz - alpha_x;
+    v->B_p_zx = v->W_p_xz - alpha_y;
+    v->B_p_zy = alpha_x + v->W_p_yz;
 }
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
@@ -1567,60 +1595,34 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
+    v->Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    v->Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    v->Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
-        v->R_xx*m->gravity_x;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
-        v->R_yy*m->gravity_y;
-    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
-        v->R_zz*m->gravity_z;
-    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
-        Z_q_t_2*v->omega_in_platform_z;
-    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
-        Z_q_t_3*v->omega_in_platform_x;
-    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
-        Z_q_t*v->omega_in_platform_y;
-    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
-        v->R_xz*Z_q_in_platform_z;
-    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
-        v->R_yz*Z_q_in_platform_z;
-    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
-        v->R_zz*Z_q_in_platform_z;
-    v->Z_p_x = Z_p_x;
-    v->Z_p_y = Z_p_y;
-    v->Z_p_z = Z_p_z;
-    v->Z_q_x = Z_q_x;
-    v->Z_q_y = Z_q_y;
-    v->Z_q_z = Z_q_z;
+    const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
+    const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
+    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
+        Z_q_t_2*omega_z;
+    v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
+        Z_q_t_3*omega_x;
+    v->Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x + Z_q_t_2*omega_x -
+        Z_q_t*omega_y;
 }
 
 typedef struct {
-    real prs_q_x, prs_q_y, prs_q_z, prs_S_in_axes0_y, prs_disc_1, prs_rho2_2, prs_c_2, prs_s_2,
-        prs_v_2_in_axes0_x, prs_v_2_in_axes0_y, axis_y_prs_axes2_x, axis_y_prs_axes2_y,
-        axis_y_prs_axes2_z, axis_x_prs_axes2_x, axis_x_prs_axes2_y, axis_x_prs_axes2_z, prs_w_1_t,
-        prs_w_1_in_axes2_x, prs_w_1_in_axes2_y, prs_Hk_a_1_x, prs_Hk_a_1_y, prs_Hk_a_1_z, prs_a_p_x,
-        prs_a_p_y, prs_a_p_z, prs_S_dot_t, prs_S_dot_t_2, prs_S_dot_t_3, prs_S_dot_x, prs_S_dot_y,
-        prs_S_dot_z, prs_qd_2_t, prs_W_2_t, prs_S_ddot_t, prs_S_ddot_t_2, prs_S_ddot_in_axes2_y,
-        prs_w_1_x, prs_w_1_y, prs_w_1_z, prs_H_a_1_x, prs_H_a_1_y, prs_H_a_1_z, prs_d_c_xx,
-        prs_d_c_xy, prs_d_c_xz, prs_d_c_yy, prs_d_c_yz, prs_d_c_zz, prs_M_ta_t_3, prs_M_ta_t_4,
-        prs_M_ta_t_5, prs_M_ta_t_6, prs_M_ta_t_8, prs_M_ta_t_9, prs_M_ta_t_10, prs_M_ta_t_11,
-        prs_M_ta_t_12, prs_M_aa_t, prs_M_aa_t_2, prs_M_aa_t_3, prs_M_aa_t_4, prs_M_aa_t_5,
-        prs_M_aa_t_6, prs_u_1_x, prs_u_1_y, prs_u_1_z, prs_u_1_in_axes2_y, prs_c_x, prs_c_y, prs_c_z;
+    real prs_q_x, prs_q_y, prs_q_z, prs_S_in_axes0_x, prs_S_in_axes0_z, prs_disc_1, prs_q_1_t,
+        prs_rho2_2, prs_c_2, prs_s_2, prs_v_2_in_axes0_x, prs_v_2_in_axes0_y, axis_y_prs_axes2_x,
+        axis_y_prs_axes2_y, axis_y_prs_axes2_z, axis_x_prs_axes2_x, axis_x_prs_axes2_y,
+        axis_x_prs_axes2_z, prs_w_1_t, prs_w_1_in_axes2_x, prs_w_1_in_axes2_y, prs_w_1_x, prs_w_1_y,
+        prs_w_1_z, prs_g_in_axes2_x, prs_g_in_axes2_y, prs_P_c_2_in_axes0_x, prs_H_a_1_x, prs_H_a_1_y,
+        prs_H_a_1_z, prs_Hk_a_1_x, prs_Hk_a_1_y, prs_Hk_a_1_z, prs_S_dot_x, prs_S_dot_y, prs_S_dot_z,
+        prs_qd_1_t, prs_u_1_x, prs_u_1_y, prs_u_1_z, prs_bias_t, prs_f_2_t, prs_f_2_t_2, prs_qdd_1_t,
+        prs_qdd_1, prs_d_c_xx, prs_d_c_xy, prs_d_c_xz, prs_d_c_yy, prs_d_c_yz, prs_d_c_zz,
+        prs_M_ta_t_3, prs_M_ta_t_4, prs_M_ta_t_5, prs_M_ta_t_6, prs_M_ta_t_8, prs_M_ta_t_9,
+        prs_M_ta_t_10, prs_M_ta_t_11, prs_M_ta_t_12, prs_M_aa_t, prs_M_aa_t_2, prs_M_aa_t_3,
+        prs_M_aa_t_4, prs_M_aa_t_5, prs_M_aa_t_6, prs_U_x, prs_U_y, prs_U_z, prs_Z_a_t, prs_Z_a_t_2,
+        prs_Z_a_t_3, prs_w_1_x_2, prs_w_1_y_2, prs_w_1_z_2, prs_c_x, prs_c_y, prs_c_z;
 } values_prs;
 
 INLINE void stage_prs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1630,108 +1632,85 @@ INLINE void stage_prs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real prs_q_x = R_xy*m->prs_platform_point_y[i] + R_xz*m->prs_platform_point_z[i] +
+    v->prs_q_x = R_xy*m->prs_platform_point_y[i] + R_xz*m->prs_platform_point_z[i] +
         R_xx*m->prs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real prs_q_y = R_yx*m->prs_platform_point_x[i] + R_yz*m->prs_platform_point_z[i] +
+    v->prs_q_y = R_yx*m->prs_platform_point_x[i] + R_yz*m->prs_platform_point_z[i] +
         R_yy*m->prs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real prs_q_z = R_zx*m->prs_platform_point_x[i] + R_zy*m->prs_platform_point_y[i] +
+    v->prs_q_z = R_zx*m->prs_platform_point_x[i] + R_zy*m->prs_platform_point_y[i] +
         R_zz*m->prs_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real prs_S_x = t_x - m->prs_base_point_x[i] + prs_q_x;
+    const real prs_S_x = t_x - m->prs_base_point_x[i] + v->prs_q_x;
     const real t_y = X[1*w + j];
-    const real prs_S_y = t_y - m->prs_base_point_y[i] + prs_q_y;
+    const real prs_S_y = t_y - m->prs_base_point_y[i] + v->prs_q_y;
     const real t_z = X[2*w + j];
-    const real prs_S_z = t_z - m->prs_base_point_z[i] + prs_q_z;
-    const real prs_S_in_axes0_x = prs_S_x*m->prs_base_frame_xx[i] +
-        prs_S_y*m->prs_base_frame_yx[i] + prs_S_z*m->prs_base_frame_zx[i];
+    const real prs_S_z = t_z - m->prs_base_point_z[i] + v->prs_q_z;
+    v->prs_S_in_axes0_x = prs_S_x*m->prs_base_frame_xx[i] + prs_S_y*m->prs_base_frame_yx[i] +
+        prs_S_z*m->prs_base_frame_zx[i];
     const real prs_S_in_axes0_y = prs_S_x*m->prs_base_frame_xy[i] +
         prs_S_y*m->prs_base_frame_yy[i] + prs_S_z*m->prs_base_frame_zy[i];
-    const real prs_S_in_axes0_z = prs_S_x*m->prs_base_frame_xz[i] +
-        prs_S_y*m->prs_base_frame_yz[i] + prs_S_z*m->prs_base_frame_zz[i];
+    v->prs_S_in_axes0_z = prs_S_x*m->prs_base_frame_xz[i] + prs_S_y*m->prs_base_frame_yz[i] +
+        prs_S_z*m->prs_base_frame_zz[i];
     /* (prs-disc_1) discriminant of the distance equation */
     const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-    const real prs_disc_1 = m->prs_size_t[i] + prs_S_in_axes0_x*prs_S_in_axes0_x +
-        prs_S_in_axes0_z*prs_S_in_axes0_z - prs_disc_1_t;
+    v->prs_disc_1 = m->prs_size_t[i] + v->prs_S_in_axes0_x*v->prs_S_in_axes0_x +
+        v->prs_S_in_axes0_z*v->prs_S_in_axes0_z - prs_disc_1_t;
+    /* (prs-q_1) displacement of joint 1 */
+    v->prs_q_1_t = -m->prs_branch_1[i]*root(v->prs_disc_1);
     /* (prs-rho2_2) squared amplitude */
-    const real prs_rho2_2 = m->prs_size_t[i]*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1);
+    v->prs_rho2_2 = m->prs_size_t[i]*(prs_S_in_axes0_y*prs_S_in_axes0_y + v->prs_disc_1);
     /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real prs_c_2_t = 1/(root(prs_rho2_2));
-    const real prs_c_2 =
-        -m->prs_branch_1[i]*prs_c_2_t*root(prs_disc_1)*m->prs_platform_joint_offset_x[i];
+    const real prs_c_2_t = 1/(root(v->prs_rho2_2));
+    v->prs_c_2 = prs_c_2_t*m->prs_platform_joint_offset_x[i]*v->prs_q_1_t;
     /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-    const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*m->prs_platform_joint_offset_x[i];
+    v->prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*m->prs_platform_joint_offset_x[i];
     /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-    const real prs_v_2_in_axes0_x = -m->prs_platform_joint_offset_x[i]*prs_s_2;
-    const real prs_v_2_in_axes0_y = prs_c_2*m->prs_platform_joint_offset_x[i];
+    v->prs_v_2_in_axes0_x = -m->prs_platform_joint_offset_x[i]*v->prs_s_2;
+    v->prs_v_2_in_axes0_y = v->prs_c_2*m->prs_platform_joint_offset_x[i];
     /* (prs-w_1) reciprocal vector 1 */
-    const real axis_y_prs_axes2_x = m->prs_base_frame_xy[i]*prs_c_2 -
-        m->prs_base_frame_xx[i]*prs_s_2;
-    const real axis_y_prs_axes2_y = m->prs_base_frame_yy[i]*prs_c_2 -
-        m->prs_base_frame_yx[i]*prs_s_2;
-    const real axis_y_prs_axes2_z = m->prs_base_frame_zy[i]*prs_c_2 -
-        m->prs_base_frame_zx[i]*prs_s_2;
-    const real axis_x_prs_axes2_x = m->prs_base_frame_xy[i]*prs_s_2 +
-        m->prs_base_frame_xx[i]*prs_c_2;
-    const real axis_x_prs_axes2_y = m->prs_base_frame_yy[i]*prs_s_2 +
-        m->prs_base_frame_yx[i]*prs_c_2;
-    const real axis_x_prs_axes2_z = m->prs_base_frame_zy[i]*prs_s_2 +
-        m->prs_base_frame_zx[i]*prs_c_2;
-    const real prs_w_1_t = -1/prs_v_2_in_axes0_y;
-    const real prs_w_1_t_2 = prs_v_2_in_axes0_x*prs_w_1_t;
-    const real prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t_2;
-    const real prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t_2 - prs_s_2;
+    v->axis_y_prs_axes2_x = m->prs_base_frame_xy[i]*v->prs_c_2 -
+        m->prs_base_frame_xx[i]*v->prs_s_2;
+    v->axis_y_prs_axes2_y = m->prs_base_frame_yy[i]*v->prs_c_2 -
+        m->prs_base_frame_yx[i]*v->prs_s_2;
+    v->axis_y_prs_axes2_z = m->prs_base_frame_zy[i]*v->prs_c_2 -
+        m->prs_base_frame_zx[i]*v->prs_s_2;
+    v->axis_x_prs_axes2_x = m->prs_base_frame_xx[i]*v->prs_c_2 +
+        m->prs_base_frame_xy[i]*v->prs_s_2;
+    v->axis_x_prs_axes2_y = m->prs_base_frame_yx[i]*v->prs_c_2 +
+        m->prs_base_frame_yy[i]*v->prs_s_2;
+    v->axis_x_prs_axes2_z = m->prs_base_frame_zx[i]*v->prs_c_2 +
+        m->prs_base_frame_zy[i]*v->prs_s_2;
+    v->prs_w_1_t = -1/v->prs_v_2_in_axes0_y;
+    const real prs_w_1_t_2 = v->prs_v_2_in_axes0_x*v->prs_w_1_t;
+    v->prs_w_1_in_axes2_x = v->prs_c_2 + v->prs_s_2*prs_w_1_t_2;
+    v->prs_w_1_in_axes2_y = v->prs_c_2*prs_w_1_t_2 - v->prs_s_2;
+    v->prs_w_1_x = v->axis_x_prs_axes2_x*v->prs_w_1_in_axes2_x +
+        v->axis_y_prs_axes2_x*v->prs_w_1_in_axes2_y;
+    v->prs_w_1_y = v->axis_x_prs_axes2_y*v->prs_w_1_in_axes2_x +
+        v->axis_y_prs_axes2_y*v->prs_w_1_in_axes2_y;
+    v->prs_w_1_z = v->axis_x_prs_axes2_z*v->prs_w_1_in_axes2_x +
+        v->axis_y_prs_axes2_z*v->prs_w_1_in_axes2_y;
+    /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->prs_g_in_axes2_x = v->prs_c_2*m->prs_g_in_axes0_x[i] +
+        m->prs_g_in_axes0_y[i]*v->prs_s_2;
+    v->prs_g_in_axes2_y = v->prs_c_2*m->prs_g_in_axes0_y[i] -
+        m->prs_g_in_axes0_x[i]*v->prs_s_2;
+    /* (prs-P_c_2) force that accelerates joint 2, per unit */
+    v->prs_P_c_2_in_axes0_x = -v->prs_c_2*m->prs_h_2_in_spec2_y[i] -
+        m->prs_h_2_in_spec2_x[i]*v->prs_s_2;
+    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+    v->prs_H_a_1_x = v->prs_q_y*v->prs_w_1_z - v->prs_q_z*v->prs_w_1_y;
+    v->prs_H_a_1_y = v->prs_q_z*v->prs_w_1_x - v->prs_q_x*v->prs_w_1_z;
+    v->prs_H_a_1_z = v->prs_q_x*v->prs_w_1_y - v->prs_q_y*v->prs_w_1_x;
     /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real prs_Hk_a_1_x = m->prs_base_frame_zz[i]*prs_q_y -
-        m->prs_base_frame_yz[i]*prs_q_z;
-    const real prs_Hk_a_1_y = m->prs_base_frame_xz[i]*prs_q_z -
-        m->prs_base_frame_zz[i]*prs_q_x;
-    const real prs_Hk_a_1_z = m->prs_base_frame_yz[i]*prs_q_x -
-        m->prs_base_frame_xz[i]*prs_q_y;
-    v->prs_q_x = prs_q_x;
-    v->prs_q_y = prs_q_y;
-    v->prs_q_z = prs_q_z;
-    v->prs_S_in_axes0_y = prs_S_in_axes0_y;
-    v->prs_disc_1 = prs_disc_1;
-    v->prs_rho2_2 = prs_rho2_2;
-    v->prs_c_2 = prs_c_2;
-    v->prs_s_2 = prs_s_2;
-    v->prs_v_2_in_axes0_x = prs_v_2_in_axes0_x;
-    v->prs_v_2_in_axes0_y = prs_v_2_in_axes0_y;
-    v->axis_y_prs_axes2_x = axis_y_prs_axes2_x;
-    v->axis_y_prs_axes2_y = axis_y_prs_axes2_y;
-    v->axis_y_prs_axes2_z = axis_y_prs_axes2_z;
-    v->axis_x_prs_axes2_x = axis_x_prs_axes2_x;
-    v->axis_x_prs_axes2_y = axis_x_prs_axes2_y;
-    v->axis_x_prs_axes2_z = axis_x_prs_axes2_z;
-    v->prs_w_1_t = prs_w_1_t;
-    v->prs_w_1_in_axes2_x = prs_w_1_in_axes2_x;
-    v->prs_w_1_in_axes2_y = prs_w_1_in_axes2_y;
-    v->prs_Hk_a_1_x = prs_Hk_a_1_x;
-    v->prs_Hk_a_1_y = prs_Hk_a_1_y;
-    v->prs_Hk_a_1_z = prs_Hk_a_1_z;
-}
-
-INLINE void stage_prs_A_X(size_t w, size_t j, const real *A, values_prs *v)
-{
-    /* (prs-a_p) acceleration of the connection point without its centripetal part */
-    const real alpha_y = A[4*w + j];
-    const real alpha_z = A[5*w + j];
-    const real t_ddot_x = A[0*w + j];
-    const real prs_a_p_x = t_ddot_x + alpha_y*v->prs_q_z - alpha_z*v->prs_q_y;
-    const real alpha_x = A[3*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real prs_a_p_y = t_ddot_y + alpha_z*v->prs_q_x - alpha_x*v->prs_q_z;
-    const real t_ddot_z = A[2*w + j];
-    const real prs_a_p_z = t_ddot_z + alpha_x*v->prs_q_y - alpha_y*v->prs_q_x;
-    v->prs_a_p_x = prs_a_p_x;
-    v->prs_a_p_y = prs_a_p_y;
-    v->prs_a_p_z = prs_a_p_z;
+    v->prs_Hk_a_1_x = m->prs_base_frame_zz[i]*v->prs_q_y - m->prs_base_frame_yz[i]*v->prs_q_z;
+    v->prs_Hk_a_1_y = m->prs_base_frame_xz[i]*v->prs_q_z - m->prs_base_frame_zz[i]*v->prs_q_x;
+    v->prs_Hk_a_1_z = m->prs_base_frame_yz[i]*v->prs_q_x - m->prs_base_frame_xz[i]*v->prs_q_y;
 }
 
 INLINE void stage_prs_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1745,77 +1724,62 @@ INLINE void stage_prs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real prs_S_dot_t_2 = omega_z*v->prs_q_x - omega_x*v->prs_q_z;
     const real prs_S_dot_t_3 = omega_x*v->prs_q_y - omega_y*v->prs_q_x;
     const real t_dot_x = V[0*w + j];
-    const real prs_S_dot_x = t_dot_x + prs_S_dot_t;
+    v->prs_S_dot_x = t_dot_x + prs_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real prs_S_dot_y = t_dot_y + prs_S_dot_t_2;
+    v->prs_S_dot_y = t_dot_y + prs_S_dot_t_2;
     const real t_dot_z = V[2*w + j];
-    const real prs_S_dot_z = t_dot_z + prs_S_dot_t_3;
-    /* (prs-qd_2) rate of joint 2 */
-    const real prs_qd_2_t = v->prs_w_1_t*(prs_S_dot_x*m->prs_base_frame_xy[i] +
-        prs_S_dot_y*m->prs_base_frame_yy[i] + prs_S_dot_z*m->prs_base_frame_zy[i]);
+    v->prs_S_dot_z = t_dot_z + prs_S_dot_t_3;
+    /* (prs-qd_1) rate of joint 1 */
+    v->prs_qd_1_t = v->prs_w_1_t*(v->prs_S_dot_x*m->prs_base_frame_xy[i] +
+        v->prs_S_dot_y*m->prs_base_frame_yy[i] + v->prs_S_dot_z*m->prs_base_frame_zy[i]);
     /* (prs-W_2) centripetal tensor of link 2 */
-    const real prs_W_2_t = prs_qd_2_t*prs_qd_2_t;
-    v->prs_S_dot_t = prs_S_dot_t;
-    v->prs_S_dot_t_2 = prs_S_dot_t_2;
-    v->prs_S_dot_t_3 = prs_S_dot_t_3;
-    v->prs_S_dot_x = prs_S_dot_x;
-    v->prs_S_dot_y = prs_S_dot_y;
-    v->prs_S_dot_z = prs_S_dot_z;
-    v->prs_qd_2_t = prs_qd_2_t;
-    v->prs_W_2_t = prs_W_2_t;
+    const real prs_W_2_t = v->prs_qd_1_t*v->prs_qd_1_t;
+    /* (prs-u_1) centripetal acceleration of the connection point */
+    v->prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
+    v->prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
+    v->prs_u_1_z = omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
+    /* (prs-bias) acceleration of the connection point at zero joint accelerations */
+    v->prs_bias_t = m->prs_platform_joint_offset_x[i]*v->prs_qd_1_t*v->prs_qd_1_t;
+    /* (prs-f_2) inertia force of link 2 less its weight */
+    v->prs_f_2_t = prs_W_2_t*m->prs_h_2_in_spec2_x[i];
+    v->prs_f_2_t_2 = prs_W_2_t*m->prs_h_2_in_spec2_y[i];
 }
 
-INLINE void stage_prs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_prs *v)
+INLINE void stage_prs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
+    real *A, values_prs *v)
 {
     /* (prs-S_ddot) acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real prs_S_ddot_x = omega_y*v->prs_S_dot_t_3 - omega_z*v->prs_S_dot_t_2 +
-        v->prs_a_p_x;
-    const real omega_x = V[3*w + j];
-    const real prs_S_ddot_y = omega_z*v->prs_S_dot_t - omega_x*v->prs_S_dot_t_3 +
-        v->prs_a_p_y;
-    const real prs_S_ddot_z = omega_x*v->prs_S_dot_t_2 - omega_y*v->prs_S_dot_t +
-        v->prs_a_p_z;
+    const real B_p_xy = s[9*w + j];
+    const real B_p_xz = s[10*w + j];
+    const real W_p_t_4 = s[11*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real prs_S_ddot_x = t_ddot_x + B_p_xy*v->prs_q_y + B_p_xz*v->prs_q_z -
+        W_p_t_4*v->prs_q_x;
+    const real B_p_yx = s[12*w + j];
+    const real B_p_yz = s[13*w + j];
+    const real W_p_t_5 = s[14*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real prs_S_ddot_y = t_ddot_y + B_p_yx*v->prs_q_x + B_p_yz*v->prs_q_z -
+        W_p_t_5*v->prs_q_y;
+    const real B_p_zx = s[15*w + j];
+    const real B_p_zy = s[16*w + j];
+    const real W_p_t_6 = s[17*w + j];
+    const real t_ddot_z = A[2*w + j];
+    const real prs_S_ddot_z = t_ddot_z + B_p_zx*v->prs_q_x + B_p_zy*v->prs_q_y -
+        W_p_t_6*v->prs_q_z;
     const real prs_S_ddot_t = prs_S_ddot_x*m->prs_base_frame_xx[i] +
         prs_S_ddot_y*m->prs_base_frame_yx[i] + prs_S_ddot_z*m->prs_base_frame_zx[i];
     const real prs_S_ddot_t_2 = prs_S_ddot_x*m->prs_base_frame_xy[i] +
         prs_S_ddot_y*m->prs_base_frame_yy[i] + prs_S_ddot_z*m->prs_base_frame_zy[i];
     const real prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*v->prs_c_2 - prs_S_ddot_t*v->prs_s_2;
-    v->prs_S_ddot_t = prs_S_ddot_t;
-    v->prs_S_ddot_t_2 = prs_S_ddot_t_2;
-    v->prs_S_ddot_in_axes2_y = prs_S_ddot_in_axes2_y;
-}
-
-INLINE void stage_prs_H_condition(const prepared *m, size_t i, values_prs *v)
-{
-    /* (prs-w_1) reciprocal vector 1 */
-    const real prs_w_1_t = m->prs_platform_joint_offset_x[i]*v->prs_s_2/v->prs_v_2_in_axes0_y;
-    const real prs_w_1_in_axes2_x = v->prs_c_2 + v->prs_s_2*prs_w_1_t;
-    const real prs_w_1_in_axes2_y = v->prs_c_2*prs_w_1_t - v->prs_s_2;
-    const real prs_w_1_x = prs_w_1_in_axes2_x*(m->prs_base_frame_xy[i]*v->prs_s_2 +
-        m->prs_base_frame_xx[i]*v->prs_c_2) +
-        prs_w_1_in_axes2_y*(m->prs_base_frame_xy[i]*v->prs_c_2 -
-        m->prs_base_frame_xx[i]*v->prs_s_2);
-    const real prs_w_1_y = prs_w_1_in_axes2_x*(m->prs_base_frame_yy[i]*v->prs_s_2 +
-        m->prs_base_frame_yx[i]*v->prs_c_2) +
-        prs_w_1_in_axes2_y*(m->prs_base_frame_yy[i]*v->prs_c_2 -
-        m->prs_base_frame_yx[i]*v->prs_s_2);
-    const real prs_w_1_z = prs_w_1_in_axes2_x*(m->prs_base_frame_zy[i]*v->prs_s_2 +
-        m->prs_base_frame_zx[i]*v->prs_c_2) +
-        prs_w_1_in_axes2_y*(m->prs_base_frame_zy[i]*v->prs_c_2 -
-        m->prs_base_frame_zx[i]*v->prs_s_2);
-    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-    const real prs_H_a_1_x = v->prs_q_y*prs_w_1_z - v->prs_q_z*prs_w_1_y;
-    const real prs_H_a_1_y = v->prs_q_z*prs_w_1_x - v->prs_q_x*prs_w_1_z;
-    const real prs_H_a_1_z = v->prs_q_x*prs_w_1_y - v->prs_q_y*prs_w_1_x;
-    v->prs_w_1_x = prs_w_1_x;
-    v->prs_w_1_y = prs_w_1_y;
-    v->prs_w_1_z = prs_w_1_z;
-    v->prs_H_a_1_x = prs_H_a_1_x;
-    v->prs_H_a_1_y = prs_H_a_1_y;
-    v->prs_H_a_1_z = prs_H_a_1_z;
+    /* (prs-rel) acceleration of the connection point left to the joint accelerations */
+    const real prs_rel_in_axes2_x = prs_S_ddot_t*v->prs_c_2 + prs_S_ddot_t_2*v->prs_s_2 +
+        v->prs_bias_t;
+    /* (prs-qdd_1) acceleration of joint 1 */
+    v->prs_qdd_1_t = v->prs_w_1_t*(prs_S_ddot_in_axes2_y*v->prs_c_2 +
+        prs_rel_in_axes2_x*v->prs_s_2);
+    v->prs_qdd_1 = v->prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*v->prs_s_2 +
+        v->prs_qdd_1_t*v->prs_v_2_in_axes0_x;
 }
 
 INLINE void stage_prs_M_dynamics(const prepared *m, size_t i, values_prs *v)
@@ -1823,20 +1787,17 @@ INLINE void stage_prs_M_dynamics(const prepared *m, size_t i, values_prs *v)
     /* (prs-w_2) reciprocal vector 2 */
     const real prs_w_2_t = v->prs_s_2*v->prs_w_1_t;
     const real prs_w_2_in_axes2_y = -v->prs_c_2*v->prs_w_1_t;
-    /* (prs-P_c_2) force that accelerates joint 2, per unit */
-    const real prs_P_c_2_in_axes0_x = -m->prs_h_2_in_spec2_x[i]*v->prs_s_2 -
-        v->prs_c_2*m->prs_h_2_in_spec2_y[i];
     /* (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     const real prs_d_Gamma_2_t = v->prs_w_1_t*(m->prs_J_2_in_spec2_zz[i] -
-        prs_P_c_2_in_axes0_x*v->prs_v_2_in_axes0_x);
-    const real prs_d_Gamma_2_in_axes2_x = prs_P_c_2_in_axes0_x*v->prs_c_2 -
+        v->prs_P_c_2_in_axes0_x*v->prs_v_2_in_axes0_x);
+    const real prs_d_Gamma_2_in_axes2_x = v->prs_P_c_2_in_axes0_x*v->prs_c_2 -
         prs_d_Gamma_2_t*v->prs_s_2;
-    const real prs_d_Gamma_2_in_axes2_y = -prs_P_c_2_in_axes0_x*v->prs_s_2 -
+    const real prs_d_Gamma_2_in_axes2_y = -v->prs_P_c_2_in_axes0_x*v->prs_s_2 -
         v->prs_c_2*prs_d_Gamma_2_t;
     /* (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
        inertia and weight */
-    const real prs_d_Gamma_1_t = v->prs_w_1_t*(prs_P_c_2_in_axes0_x -
+    const real prs_d_Gamma_1_t = v->prs_w_1_t*(v->prs_P_c_2_in_axes0_x -
         m->prs_P_c_1_in_axes0_x[i]*v->prs_v_2_in_axes0_x);
     const real prs_d_Gamma_1_in_axes2_x = m->prs_P_c_1_in_axes0_x[i]*v->prs_c_2 -
         prs_d_Gamma_1_t*v->prs_s_2;
@@ -1862,78 +1823,87 @@ INLINE void stage_prs_M_dynamics(const prepared *m, size_t i, values_prs *v)
         v->axis_y_prs_axes2_x*prs_d_G_in_axes2_yy;
     const real prs_d_c_t_4 = -v->axis_x_prs_axes2_y*prs_d_G_in_axes2_xy -
         v->axis_y_prs_axes2_y*prs_d_G_in_axes2_yy;
-    const real prs_d_c_xx = v->axis_x_prs_axes2_x*prs_d_c_t +
-        v->axis_y_prs_axes2_x*prs_d_c_t_3;
-    const real prs_d_c_xy = v->axis_x_prs_axes2_y*prs_d_c_t +
-        v->axis_y_prs_axes2_y*prs_d_c_t_3;
-    const real prs_d_c_xz = v->axis_x_prs_axes2_z*prs_d_c_t +
-        v->axis_y_prs_axes2_z*prs_d_c_t_3;
-    const real prs_d_c_yy = v->axis_x_prs_axes2_y*prs_d_c_t_2 +
-        v->axis_y_prs_axes2_y*prs_d_c_t_4;
-    const real prs_d_c_yz = v->axis_x_prs_axes2_z*prs_d_c_t_2 +
-        v->axis_y_prs_axes2_z*prs_d_c_t_4;
-    const real prs_d_c_zz = v->axis_x_prs_axes2_z*(-v->axis_x_prs_axes2_z*prs_d_G_in_axes2_xx
-        - v->axis_y_prs_axes2_z*prs_d_G_in_axes2_yx) +
+    v->prs_d_c_xx = v->axis_x_prs_axes2_x*prs_d_c_t + v->axis_y_prs_axes2_x*prs_d_c_t_3;
+    v->prs_d_c_xy = v->axis_x_prs_axes2_y*prs_d_c_t + v->axis_y_prs_axes2_y*prs_d_c_t_3;
+    v->prs_d_c_xz = v->axis_x_prs_axes2_z*prs_d_c_t + v->axis_y_prs_axes2_z*prs_d_c_t_3;
+    v->prs_d_c_yy = v->axis_x_prs_axes2_y*prs_d_c_t_2 + v->axis_y_prs_axes2_y*prs_d_c_t_4;
+    v->prs_d_c_yz = v->axis_x_prs_axes2_z*prs_d_c_t_2 + v->axis_y_prs_axes2_z*prs_d_c_t_4;
+    v->prs_d_c_zz = v->axis_x_prs_axes2_z*(-v->axis_x_prs_axes2_z*prs_d_G_in_axes2_xx -
+        v->axis_y_prs_axes2_z*prs_d_G_in_axes2_yx) +
         v->axis_y_prs_axes2_z*(-v->axis_x_prs_axes2_z*prs_d_G_in_axes2_xy -
         v->axis_y_prs_axes2_z*prs_d_G_in_axes2_yy);
     /* (M_ta) coupling block of M */
-    const real prs_M_ta_t = prs_d_c_xy*v->prs_q_z;
-    const real prs_M_ta_t_2 = prs_d_c_xz*v->prs_q_y;
-    const real prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2;
-    const real prs_M_ta_t_4 = prs_d_c_xx*v->prs_q_z - prs_d_c_xz*v->prs_q_x;
-    const real prs_M_ta_t_5 = prs_d_c_xx*v->prs_q_y - prs_d_c_xy*v->prs_q_x;
-    const real prs_M_ta_t_6 = prs_d_c_yy*v->prs_q_z - prs_d_c_yz*v->prs_q_y;
-    const real prs_M_ta_t_7 = prs_d_c_yz*v->prs_q_x;
-    const real prs_M_ta_t_8 = prs_M_ta_t_7 - prs_M_ta_t;
-    const real prs_M_ta_t_9 = prs_d_c_xy*v->prs_q_y - prs_d_c_yy*v->prs_q_x;
-    const real prs_M_ta_t_10 = prs_d_c_yz*v->prs_q_z - prs_d_c_zz*v->prs_q_y;
-    const real prs_M_ta_t_11 = prs_d_c_zz*v->prs_q_x - prs_d_c_xz*v->prs_q_z;
-    const real prs_M_ta_t_12 = prs_M_ta_t_2 - prs_M_ta_t_7;
+    const real prs_M_ta_t = v->prs_d_c_xy*v->prs_q_z;
+    const real prs_M_ta_t_2 = v->prs_d_c_xz*v->prs_q_y;
+    v->prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2;
+    v->prs_M_ta_t_4 = v->prs_d_c_xx*v->prs_q_z - v->prs_d_c_xz*v->prs_q_x;
+    v->prs_M_ta_t_5 = v->prs_d_c_xx*v->prs_q_y - v->prs_d_c_xy*v->prs_q_x;
+    v->prs_M_ta_t_6 = v->prs_d_c_yy*v->prs_q_z - v->prs_d_c_yz*v->prs_q_y;
+    const real prs_M_ta_t_7 = v->prs_d_c_yz*v->prs_q_x;
+    v->prs_M_ta_t_8 = prs_M_ta_t_7 - prs_M_ta_t;
+    v->prs_M_ta_t_9 = v->prs_d_c_xy*v->prs_q_y - v->prs_d_c_yy*v->prs_q_x;
+    v->prs_M_ta_t_10 = v->prs_d_c_yz*v->prs_q_z - v->prs_d_c_zz*v->prs_q_y;
+    v->prs_M_ta_t_11 = v->prs_d_c_zz*v->prs_q_x - v->prs_d_c_xz*v->prs_q_z;
+    v->prs_M_ta_t_12 = prs_M_ta_t_2 - prs_M_ta_t_7;
     /* (M_aa) rotational block of M */
-    const real prs_M_aa_t = prs_M_ta_t_10*v->prs_q_y - prs_M_ta_t_6*v->prs_q_z;
-    const real prs_M_aa_t_2 = prs_M_ta_t_11*v->prs_q_y - prs_M_ta_t_8*v->prs_q_z;
-    const real prs_M_aa_t_3 = prs_M_ta_t_12*v->prs_q_y - prs_M_ta_t_9*v->prs_q_z;
-    const real prs_M_aa_t_4 = prs_M_ta_t_11*v->prs_q_x + prs_M_ta_t_4*v->prs_q_z;
-    const real prs_M_aa_t_5 = prs_M_ta_t_5*v->prs_q_z - prs_M_ta_t_12*v->prs_q_x;
-    const real prs_M_aa_t_6 = prs_M_ta_t_9*v->prs_q_x - prs_M_ta_t_5*v->prs_q_y;
-    v->prs_d_c_xx = prs_d_c_xx;
-    v->prs_d_c_xy = prs_d_c_xy;
-    v->prs_d_c_xz = prs_d_c_xz;
-    v->prs_d_c_yy = prs_d_c_yy;
-    v->prs_d_c_yz = prs_d_c_yz;
-    v->prs_d_c_zz = prs_d_c_zz;
-    v->prs_M_ta_t_3 = prs_M_ta_t_3;
-    v->prs_M_ta_t_4 = prs_M_ta_t_4;
-    v->prs_M_ta_t_5 = prs_M_ta_t_5;
-    v->prs_M_ta_t_6 = prs_M_ta_t_6;
-    v->prs_M_ta_t_8 = prs_M_ta_t_8;
-    v->prs_M_ta_t_9 = prs_M_ta_t_9;
-    v->prs_M_ta_t_10 = prs_M_ta_t_10;
-    v->prs_M_ta_t_11 = prs_M_ta_t_11;
-    v->prs_M_ta_t_12 = prs_M_ta_t_12;
-    v->prs_M_aa_t = prs_M_aa_t;
-    v->prs_M_aa_t_2 = prs_M_aa_t_2;
-    v->prs_M_aa_t_3 = prs_M_aa_t_3;
-    v->prs_M_aa_t_4 = prs_M_aa_t_4;
-    v->prs_M_aa_t_5 = prs_M_aa_t_5;
-    v->prs_M_aa_t_6 = prs_M_aa_t_6;
+    v->prs_M_aa_t = v->prs_M_ta_t_10*v->prs_q_y - v->prs_M_ta_t_6*v->prs_q_z;
+    v->prs_M_aa_t_2 = v->prs_M_ta_t_11*v->prs_q_y - v->prs_M_ta_t_8*v->prs_q_z;
+    v->prs_M_aa_t_3 = v->prs_M_ta_t_12*v->prs_q_y - v->prs_M_ta_t_9*v->prs_q_z;
+    v->prs_M_aa_t_4 = v->prs_M_ta_t_11*v->prs_q_x + v->prs_M_ta_t_4*v->prs_q_z;
+    v->prs_M_aa_t_5 = v->prs_M_ta_t_5*v->prs_q_z - v->prs_M_ta_t_12*v->prs_q_x;
+    v->prs_M_aa_t_6 = v->prs_M_ta_t_9*v->prs_q_x - v->prs_M_ta_t_5*v->prs_q_y;
 }
 
-INLINE void stage_prs_Z_dynamics(size_t w, size_t j, const real *V, values_prs *v)
+INLINE void stage_prs_Z_dynamics(const prepared *m, size_t i, values_prs *v)
 {
     /* (prs-u_1) centripetal acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real prs_u_1_x = omega_y*v->prs_S_dot_t_3 - omega_z*v->prs_S_dot_t_2;
-    const real omega_x = V[3*w + j];
-    const real prs_u_1_y = omega_z*v->prs_S_dot_t - omega_x*v->prs_S_dot_t_3;
-    const real prs_u_1_z = omega_x*v->prs_S_dot_t_2 - omega_y*v->prs_S_dot_t;
-    const real prs_u_1_in_axes2_y = v->axis_y_prs_axes2_x*prs_u_1_x +
-        v->axis_y_prs_axes2_y*prs_u_1_y + v->axis_y_prs_axes2_z*prs_u_1_z;
-    v->prs_u_1_x = prs_u_1_x;
-    v->prs_u_1_y = prs_u_1_y;
-    v->prs_u_1_z = prs_u_1_z;
-    v->prs_u_1_in_axes2_y = prs_u_1_in_axes2_y;
+    const real prs_u_1_in_axes2_y = v->axis_y_prs_axes2_x*v->prs_u_1_x +
+        v->axis_y_prs_axes2_y*v->prs_u_1_y + v->axis_y_prs_axes2_z*v->prs_u_1_z;
+    /* (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real prs_rel_o_in_axes2_x = v->axis_x_prs_axes2_x*v->prs_u_1_x +
+        v->axis_x_prs_axes2_y*v->prs_u_1_y + v->axis_x_prs_axes2_z*v->prs_u_1_z +
+        v->prs_bias_t;
+    /* (prs-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real prs_qdd_1_o_t = v->prs_w_1_t*(v->prs_c_2*prs_u_1_in_axes2_y +
+        prs_rel_o_in_axes2_x*v->prs_s_2);
+    const real prs_qdd_1_o = v->prs_c_2*prs_rel_o_in_axes2_x - v->prs_s_2*prs_u_1_in_axes2_y +
+        prs_qdd_1_o_t*v->prs_v_2_in_axes0_x;
+    /* (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
+    const real prs_acc_1_o_in_axes0_x = prs_qdd_1_o - m->prs_g_in_axes0_x[i];
+    /* (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real prs_acc_2_o_in_axes2_x = v->prs_c_2*prs_qdd_1_o - v->prs_g_in_axes2_x;
+    const real prs_acc_2_o_in_axes2_y = -v->prs_g_in_axes2_y - prs_qdd_1_o*v->prs_s_2;
+    /* (prs-f_2_o) remainder of: inertia force of link 2 less its weight */
+    const real prs_f_2_o_in_axes2_x = m->prs_h_2_in_spec2_y[i]*prs_qdd_1_o_t - v->prs_f_2_t +
+        prs_acc_2_o_in_axes2_x*m->prs_link2_mass[i];
+    const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*m->prs_link2_mass[i] -
+        v->prs_f_2_t_2 - m->prs_h_2_in_spec2_x[i]*prs_qdd_1_o_t;
+    /* (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real prs_mu_2_o_in_axes2_z = prs_acc_2_o_in_axes2_y*m->prs_h_2_in_spec2_x[i] -
+        m->prs_J_2_in_spec2_zz[i]*prs_qdd_1_o_t -
+        prs_acc_2_o_in_axes2_x*m->prs_h_2_in_spec2_y[i];
+    /* (prs-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out */
+    const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*m->prs_link1_mass[i] +
+        v->prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*v->prs_s_2;
+    /* (prs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real prs_G_o_t = v->prs_w_1_t*(prs_mu_2_o_in_axes2_z -
+        prs_T_1_o_in_axes0_x*v->prs_v_2_in_axes0_x);
+    const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*v->prs_c_2 - prs_G_o_t*v->prs_s_2;
+    const real prs_G_o_in_axes2_y = -prs_T_1_o_in_axes0_x*v->prs_s_2 - prs_G_o_t*v->prs_c_2;
+    /* (prs-U) velocity and gravity terms of the leg force */
+    v->prs_U_x = v->axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
+        v->axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
+    v->prs_U_y = v->axis_x_prs_axes2_y*prs_G_o_in_axes2_x +
+        v->axis_y_prs_axes2_y*prs_G_o_in_axes2_y;
+    v->prs_U_z = v->axis_x_prs_axes2_z*prs_G_o_in_axes2_x +
+        v->axis_y_prs_axes2_z*prs_G_o_in_axes2_y;
+    /* (Z_a) rotational part of Z */
+    v->prs_Z_a_t = v->prs_U_z*v->prs_q_y - v->prs_U_y*v->prs_q_z;
+    v->prs_Z_a_t_2 = v->prs_U_x*v->prs_q_z - v->prs_U_z*v->prs_q_x;
+    v->prs_Z_a_t_3 = v->prs_U_y*v->prs_q_x - v->prs_U_x*v->prs_q_y;
 }
 
 INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
@@ -1943,35 +1913,26 @@ INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
         v->prs_s_2*v->prs_w_1_in_axes2_y;
     const real prs_w_1_t_4 = v->prs_c_2*v->prs_w_1_in_axes2_y +
         v->prs_s_2*v->prs_w_1_in_axes2_x;
-    const real prs_w_1_x = m->prs_base_frame_xx[i]*prs_w_1_t_3 +
+    v->prs_w_1_x_2 = m->prs_base_frame_xx[i]*prs_w_1_t_3 +
         m->prs_base_frame_xy[i]*prs_w_1_t_4;
-    const real prs_w_1_y = m->prs_base_frame_yx[i]*prs_w_1_t_3 +
+    v->prs_w_1_y_2 = m->prs_base_frame_yx[i]*prs_w_1_t_3 +
         m->prs_base_frame_yy[i]*prs_w_1_t_4;
-    const real prs_w_1_z = m->prs_base_frame_zx[i]*prs_w_1_t_3 +
+    v->prs_w_1_z_2 = m->prs_base_frame_zx[i]*prs_w_1_t_3 +
         m->prs_base_frame_zy[i]*prs_w_1_t_4;
-    /* (prs-rel) acceleration of the connection point left to the joint accelerations */
-    const real prs_rel_in_axes2_x = v->prs_S_ddot_t_2*v->prs_s_2 + v->prs_S_ddot_t*v->prs_c_2
-        + m->prs_platform_joint_offset_x[i]*v->prs_qd_2_t*v->prs_qd_2_t;
-    /* (prs-qdd_1) acceleration of joint 1 */
-    const real prs_qdd_1_t = v->prs_w_1_t*(v->prs_S_ddot_in_axes2_y*v->prs_c_2 +
-        prs_rel_in_axes2_x*v->prs_s_2);
-    const real prs_qdd_1 = v->prs_c_2*prs_rel_in_axes2_x - v->prs_S_ddot_in_axes2_y*v->prs_s_2
-        + prs_qdd_1_t*v->prs_v_2_in_axes0_x;
     /* (prs-acc_1) acceleration of the reference point of link 1, less gravity */
-    const real prs_acc_1_in_axes0_x = prs_qdd_1 - m->prs_g_in_axes0_x[i];
+    const real prs_acc_1_in_axes0_x = v->prs_qdd_1 - m->prs_g_in_axes0_x[i];
     /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real prs_acc_2_in_axes2_x = v->prs_c_2*prs_qdd_1 - m->prs_g_in_axes0_y[i]*v->prs_s_2
-        - v->prs_c_2*m->prs_g_in_axes0_x[i];
-    const real prs_acc_2_in_axes2_y = m->prs_g_in_axes0_x[i]*v->prs_s_2 -
-        v->prs_c_2*m->prs_g_in_axes0_y[i] - prs_qdd_1*v->prs_s_2;
+    const real prs_acc_2_in_axes2_x = v->prs_c_2*v->prs_qdd_1 - v->prs_g_in_axes2_x;
+    const real prs_acc_2_in_axes2_y = -v->prs_g_in_axes2_y - v->prs_qdd_1*v->prs_s_2;
     /* (prs-f_2) inertia force of link 2 less its weight */
-    const real prs_f_2_in_axes2_x = m->prs_h_2_in_spec2_y[i]*prs_qdd_1_t -
-        v->prs_W_2_t*m->prs_h_2_in_spec2_x[i] + prs_acc_2_in_axes2_x*m->prs_link2_mass[i];
-    const real prs_f_2_in_axes2_y = prs_acc_2_in_axes2_y*m->prs_link2_mass[i] -
-        v->prs_W_2_t*m->prs_h_2_in_spec2_y[i] - m->prs_h_2_in_spec2_x[i]*prs_qdd_1_t;
+    const real prs_f_2_in_axes2_x = m->prs_h_2_in_spec2_y[i]*v->prs_qdd_1_t - v->prs_f_2_t +
+        prs_acc_2_in_axes2_x*m->prs_link2_mass[i];
+    const real prs_f_2_in_axes2_y = prs_acc_2_in_axes2_y*m->prs_link2_mass[i] - v->prs_f_2_t_2
+        - m->prs_h_2_in_spec2_x[i]*v->prs_qdd_1_t;
     /* (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real prs_mu_2_in_axes2_z = prs_acc_2_in_axes2_y*m->prs_h_2_in_spec2_x[i] -
-        m->prs_J_2_in_spec2_zz[i]*prs_qdd_1_t - prs_acc_2_in_axes2_x*m->prs_h_2_in_spec2_y[i];
+        m->prs_J_2_in_spec2_zz[i]*v->prs_qdd_1_t -
+        prs_acc_2_in_axes2_x*m->prs_h_2_in_spec2_y[i];
     /* (prs-T_1) inertia force of the links from 1 outwards, the last link left out */
     const real prs_T_1_in_axes0_x = prs_acc_1_in_axes0_x*m->prs_link1_mass[i] +
         v->prs_c_2*prs_f_2_in_axes2_x - prs_f_2_in_axes2_y*v->prs_s_2;
@@ -1985,22 +1946,16 @@ INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
        point */
     const real prs_c_t = prs_G_in_axes2_y*v->prs_s_2 - prs_G_in_axes2_x*v->prs_c_2;
     const real prs_c_t_2 = -prs_G_in_axes2_x*v->prs_s_2 - prs_G_in_axes2_y*v->prs_c_2;
-    const real prs_c_x = m->prs_base_frame_xx[i]*prs_c_t + m->prs_base_frame_xy[i]*prs_c_t_2;
-    const real prs_c_y = m->prs_base_frame_yx[i]*prs_c_t + m->prs_base_frame_yy[i]*prs_c_t_2;
-    const real prs_c_z = m->prs_base_frame_zx[i]*prs_c_t + m->prs_base_frame_zy[i]*prs_c_t_2;
-    v->prs_w_1_x = prs_w_1_x;
-    v->prs_w_1_y = prs_w_1_y;
-    v->prs_w_1_z = prs_w_1_z;
-    v->prs_c_x = prs_c_x;
-    v->prs_c_y = prs_c_y;
-    v->prs_c_z = prs_c_z;
+    v->prs_c_x = m->prs_base_frame_xx[i]*prs_c_t + m->prs_base_frame_xy[i]*prs_c_t_2;
+    v->prs_c_y = m->prs_base_frame_yx[i]*prs_c_t + m->prs_base_frame_yy[i]*prs_c_t_2;
+    v->prs_c_z = m->prs_base_frame_zx[i]*prs_c_t + m->prs_base_frame_zy[i]*prs_c_t_2;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2012,30 +1967,28 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
-    stage_V_X(w, k, V, v);
-    stage_M_dynamics(m, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
-    s[18*w + k] = v->Z_p_x;
-    s[19*w + k] = v->Z_p_y;
-    s[20*w + k] = v->Z_p_z;
-    s[21*w + k] = v->Z_q_x;
-    s[22*w + k] = v->Z_q_y;
-    s[23*w + k] = v->Z_q_z;
+    s[27*w + k] = v->Z_p_x;
+    s[28*w + k] = v->Z_p_y;
+    s[29*w + k] = v->Z_p_z;
+    s[30*w + k] = v->Z_q_x;
+    s[31*w + k] = v->Z_q_y;
+    s[32*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2045,68 +1998,10 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     stage_prs_X(m, w, i, j, s, X, &v);
     stage_prs_V_X(m, w, i, j, V, &v);
     stage_prs_M_dynamics(m, i, &v);
-    stage_prs_Z_dynamics(w, j, V, &v);
-    /* (prs-w_1) reciprocal vector 1 */
-    const real prs_w_1_x = v.axis_x_prs_axes2_x*v.prs_w_1_in_axes2_x +
-        v.axis_y_prs_axes2_x*v.prs_w_1_in_axes2_y;
-    const real prs_w_1_y = v.axis_x_prs_axes2_y*v.prs_w_1_in_axes2_x +
-        v.axis_y_prs_axes2_y*v.prs_w_1_in_axes2_y;
-    const real prs_w_1_z = v.axis_x_prs_axes2_z*v.prs_w_1_in_axes2_x +
-        v.axis_y_prs_axes2_z*v.prs_w_1_in_axes2_y;
+    stage_prs_Z_dynamics(m, i, &v);
     /* (prs-u_1) centripetal acceleration of the connection point */
     const real prs_u_1_in_axes2_z = m->prs_base_frame_xz[i]*v.prs_u_1_x +
         m->prs_base_frame_yz[i]*v.prs_u_1_y + m->prs_base_frame_zz[i]*v.prs_u_1_z;
-    /* (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real prs_rel_o_in_axes2_x = v.axis_x_prs_axes2_x*v.prs_u_1_x +
-        v.axis_x_prs_axes2_y*v.prs_u_1_y + v.axis_x_prs_axes2_z*v.prs_u_1_z +
-        m->prs_platform_joint_offset_x[i]*v.prs_qd_2_t*v.prs_qd_2_t;
-    /* (prs-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real prs_qdd_1_o_t = v.prs_w_1_t*(v.prs_c_2*v.prs_u_1_in_axes2_y +
-        prs_rel_o_in_axes2_x*v.prs_s_2);
-    const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x - v.prs_s_2*v.prs_u_1_in_axes2_y +
-        prs_qdd_1_o_t*v.prs_v_2_in_axes0_x;
-    /* (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real prs_acc_1_o_in_axes0_x = prs_qdd_1_o - m->prs_g_in_axes0_x[i];
-    /* (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real prs_acc_2_o_in_axes2_x = v.prs_c_2*prs_qdd_1_o -
-        m->prs_g_in_axes0_y[i]*v.prs_s_2 - v.prs_c_2*m->prs_g_in_axes0_x[i];
-    const real prs_acc_2_o_in_axes2_y = m->prs_g_in_axes0_x[i]*v.prs_s_2 -
-        v.prs_c_2*m->prs_g_in_axes0_y[i] - prs_qdd_1_o*v.prs_s_2;
-    /* (prs-f_2_o) remainder of: inertia force of link 2 less its weight */
-    const real prs_f_2_o_in_axes2_x = m->prs_h_2_in_spec2_y[i]*prs_qdd_1_o_t -
-        v.prs_W_2_t*m->prs_h_2_in_spec2_x[i] + prs_acc_2_o_in_axes2_x*m->prs_link2_mass[i];
-    const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*m->prs_link2_mass[i] -
-        v.prs_W_2_t*m->prs_h_2_in_spec2_y[i] - m->prs_h_2_in_spec2_x[i]*prs_qdd_1_o_t;
-    /* (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real prs_mu_2_o_in_axes2_z = prs_acc_2_o_in_axes2_y*m->prs_h_2_in_spec2_x[i] -
-        m->prs_J_2_in_spec2_zz[i]*prs_qdd_1_o_t -
-        prs_acc_2_o_in_axes2_x*m->prs_h_2_in_spec2_y[i];
-    /* (prs-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out */
-    const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*m->prs_link1_mass[i] +
-        v.prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*v.prs_s_2;
-    /* (prs-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real prs_G_o_t = v.prs_w_1_t*(prs_mu_2_o_in_axes2_z -
-        prs_T_1_o_in_axes0_x*v.prs_v_2_in_axes0_x);
-    const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*v.prs_c_2 - prs_G_o_t*v.prs_s_2;
-    const real prs_G_o_in_axes2_y = -prs_T_1_o_in_axes0_x*v.prs_s_2 - prs_G_o_t*v.prs_c_2;
-    /* (prs-U) velocity and gravity terms of the leg force */
-    const real prs_U_x = v.axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
-        v.axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
-    const real prs_U_y = v.axis_x_prs_axes2_y*prs_G_o_in_axes2_x +
-        v.axis_y_prs_axes2_y*prs_G_o_in_axes2_y;
-    const real prs_U_z = v.axis_x_prs_axes2_z*prs_G_o_in_axes2_x +
-        v.axis_y_prs_axes2_z*prs_G_o_in_axes2_y;
-    /* (Z_a) rotational part of Z */
-    const real prs_Z_a_t = prs_U_z*v.prs_q_y - prs_U_y*v.prs_q_z;
-    const real prs_Z_a_t_2 = prs_U_x*v.prs_q_z - prs_U_z*v.prs_q_x;
-    const real prs_Z_a_t_3 = prs_U_y*v.prs_q_x - prs_U_x*v.prs_q_y;
-    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-    const real prs_H_a_1_x = v.prs_q_y*prs_w_1_z - v.prs_q_z*prs_w_1_y;
-    const real prs_H_a_1_y = v.prs_q_z*prs_w_1_x - v.prs_q_x*prs_w_1_z;
-    const real prs_H_a_1_z = v.prs_q_x*prs_w_1_y - v.prs_q_y*prs_w_1_x;
     /* (M_tt) translational block of M */
     gather(&terms[0*count + k], add, v.prs_d_c_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v.prs_d_c_xy);  /* M_tt_t_2 */
@@ -2132,21 +2027,21 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[19*count + k], add, v.prs_M_aa_t_5);  /* M_aa_yz_of_legs */
     gather(&terms[20*count + k], add, v.prs_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, prs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, prs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, prs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[24*count + k], add, prs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, prs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, prs_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (prs-w_1) */
-    o[0*count + k] = prs_w_1_x;
-    o[1*count + k] = prs_w_1_y;
-    o[2*count + k] = prs_w_1_z;
-    /* (prs-H_a_1) */
-    o[3*count + k] = prs_H_a_1_x;
-    o[4*count + k] = prs_H_a_1_y;
-    o[5*count + k] = prs_H_a_1_z;
+    gather(&terms[21*count + k], add, v.prs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, v.prs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, v.prs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[24*count + k], add, v.prs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, v.prs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, v.prs_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (prs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.prs_w_1_x;
+    o[1*count + k] = v.prs_w_1_y;
+    o[2*count + k] = v.prs_w_1_z;
+    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.prs_H_a_1_x;
+    o[4*count + k] = v.prs_H_a_1_y;
+    o[5*count + k] = v.prs_H_a_1_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     o[6*count + k] = m->prs_base_frame_xz[i];
     o[7*count + k] = m->prs_base_frame_yz[i];
@@ -2158,17 +2053,17 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     /* (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
     o[12*count + k] = prs_u_1_in_axes2_z;
-    o[15*count + k] = ((prs_w_1_x + (prs_w_1_y + prs_w_1_z)) + (prs_H_a_1_x + (prs_H_a_1_y +
-        prs_H_a_1_z))) + ((m->prs_base_frame_xz[i] + (m->prs_base_frame_yz[i] +
-        m->prs_base_frame_zz[i])) + ((v.prs_Hk_a_1_x + v.prs_Hk_a_1_y) + (v.prs_Hk_a_1_z +
-        prs_u_1_in_axes2_z)));
+    o[15*count + k] = ((v.prs_w_1_x + (v.prs_w_1_y + v.prs_w_1_z)) + (v.prs_H_a_1_x +
+        (v.prs_H_a_1_y + v.prs_H_a_1_z))) + ((m->prs_base_frame_xz[i] +
+        (m->prs_base_frame_yz[i] + m->prs_base_frame_zz[i])) + ((v.prs_Hk_a_1_x +
+        v.prs_Hk_a_1_y) + (v.prs_Hk_a_1_z + prs_u_1_in_axes2_z)));
     o[13*count + k] = UNLESS(v.prs_disc_1 >= 0);
     o[14*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
         + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
 INLINE void dynamics_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *Hk, real *constraint_bias, verdict *t)
+    *o, real *H, real *Hk, real *constraint_bias, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2189,7 +2084,7 @@ INLINE void dynamics_place_prs(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2200,58 +2095,58 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
-    const real Z_p_x = s[18*w + k];
+    const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[21*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
+    const real Z_p_y = s[28*w + k];
     const real Z_t_y_of_legs = sums[22*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
+    const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[23*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
-    const real Z_q_x = s[21*w + k];
+    const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
-    const real Z_q_y = s[22*w + k];
+    const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
-    const real Z_q_z = s[23*w + k];
+    const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2313,9 +2208,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, real *Hk, real *constraint_bias, verdict *t)
+    *H, real *Hk, real *constraint_bias, status_flags *t)
 {
-    real s[24] = {0}, sums[27] = {0};
+    real s[33] = {0}, sums[27] = {0};
     real terms_prs[27*LEGS(LEGS_OF_prs)] = {0}, o_prs[16*LEGS(LEGS_OF_prs)] = {0};
     values v;
     dynamics_before(m, 1, 0, X, &v, s, t);
@@ -2333,10 +2228,10 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias, verdict
-    *restrict t)
+    real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
+    status_flags *restrict t)
 {
-    real s[24*LANES], sums[27*LANES];
+    real s[33*LANES], sums[27*LANES];
     real o_prs[16*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2359,7 +2254,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 
 /* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2371,21 +2266,16 @@ INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, value
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
-{
-    stage_M_dynamics(m, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2423,14 +2313,14 @@ INLINE void M_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
         + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
-INLINE void M_place_prs(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_prs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2441,37 +2331,37 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -2525,9 +2415,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[18] = {0}, sums[21] = {0};
+    real s[27] = {0}, sums[21] = {0};
     real terms_prs[21*LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
     values v;
     M_before(m, 1, 0, X, &v, s, t);
@@ -2540,18 +2430,17 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
-    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
-    real s[18*LANES], sums[21*LANES];
+    real s[27*LANES], sums[21*LANES];
     real o_prs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         M_before(m, LANES, k, X, &v, s, t);
-        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
@@ -2569,7 +2458,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 
 /* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2586,14 +2475,13 @@ INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, value
 
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[9*w + k] = v->Z_p_x;
-    s[10*w + k] = v->Z_p_y;
-    s[11*w + k] = v->Z_p_z;
-    s[12*w + k] = v->Z_q_x;
-    s[13*w + k] = v->Z_q_y;
-    s[14*w + k] = v->Z_q_z;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2602,100 +2490,47 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
     stage_prs_V_X(m, w, i, j, V, &v);
-    stage_prs_Z_dynamics(w, j, V, &v);
-    /* (prs-qd_2) rate of joint 2 */
-    const real prs_qd_2_t = -1/v.prs_v_2_in_axes0_y;
-    const real prs_qd_2_t_2 = prs_qd_2_t*(v.prs_S_dot_x*m->prs_base_frame_xy[i] +
-        v.prs_S_dot_y*m->prs_base_frame_yy[i] + v.prs_S_dot_z*m->prs_base_frame_zy[i]);
-    /* (prs-W_2) centripetal tensor of link 2 */
-    const real prs_W_2_t = prs_qd_2_t_2*prs_qd_2_t_2;
-    /* (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real prs_rel_o_in_axes2_x = v.axis_x_prs_axes2_x*v.prs_u_1_x +
-        v.axis_x_prs_axes2_y*v.prs_u_1_y + v.axis_x_prs_axes2_z*v.prs_u_1_z +
-        m->prs_platform_joint_offset_x[i]*prs_qd_2_t_2*prs_qd_2_t_2;
-    /* (prs-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real prs_qdd_1_o_t = prs_qd_2_t*(v.prs_c_2*v.prs_u_1_in_axes2_y +
-        prs_rel_o_in_axes2_x*v.prs_s_2);
-    const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x - v.prs_s_2*v.prs_u_1_in_axes2_y +
-        prs_qdd_1_o_t*v.prs_v_2_in_axes0_x;
-    /* (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real prs_acc_1_o_in_axes0_x = prs_qdd_1_o - m->prs_g_in_axes0_x[i];
-    /* (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real prs_acc_2_o_in_axes2_x = v.prs_c_2*prs_qdd_1_o -
-        m->prs_g_in_axes0_y[i]*v.prs_s_2 - v.prs_c_2*m->prs_g_in_axes0_x[i];
-    const real prs_acc_2_o_in_axes2_y = m->prs_g_in_axes0_x[i]*v.prs_s_2 -
-        v.prs_c_2*m->prs_g_in_axes0_y[i] - prs_qdd_1_o*v.prs_s_2;
-    /* (prs-f_2_o) remainder of: inertia force of link 2 less its weight */
-    const real prs_f_2_o_in_axes2_x = m->prs_h_2_in_spec2_y[i]*prs_qdd_1_o_t -
-        prs_W_2_t*m->prs_h_2_in_spec2_x[i] + prs_acc_2_o_in_axes2_x*m->prs_link2_mass[i];
-    const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*m->prs_link2_mass[i] -
-        prs_W_2_t*m->prs_h_2_in_spec2_y[i] - m->prs_h_2_in_spec2_x[i]*prs_qdd_1_o_t;
-    /* (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real prs_mu_2_o_in_axes2_z = prs_acc_2_o_in_axes2_y*m->prs_h_2_in_spec2_x[i] -
-        m->prs_J_2_in_spec2_zz[i]*prs_qdd_1_o_t -
-        prs_acc_2_o_in_axes2_x*m->prs_h_2_in_spec2_y[i];
-    /* (prs-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out */
-    const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*m->prs_link1_mass[i] +
-        v.prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*v.prs_s_2;
-    /* (prs-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real prs_G_o_t = prs_qd_2_t*(prs_mu_2_o_in_axes2_z -
-        prs_T_1_o_in_axes0_x*v.prs_v_2_in_axes0_x);
-    const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*v.prs_c_2 - prs_G_o_t*v.prs_s_2;
-    const real prs_G_o_in_axes2_y = -prs_T_1_o_in_axes0_x*v.prs_s_2 - prs_G_o_t*v.prs_c_2;
-    /* (prs-U) velocity and gravity terms of the leg force */
-    const real prs_U_x = v.axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
-        v.axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
-    const real prs_U_y = v.axis_x_prs_axes2_y*prs_G_o_in_axes2_x +
-        v.axis_y_prs_axes2_y*prs_G_o_in_axes2_y;
-    const real prs_U_z = v.axis_x_prs_axes2_z*prs_G_o_in_axes2_x +
-        v.axis_y_prs_axes2_z*prs_G_o_in_axes2_y;
-    /* (Z_a) rotational part of Z */
-    const real prs_Z_a_t = prs_U_z*v.prs_q_y - prs_U_y*v.prs_q_z;
-    const real prs_Z_a_t_2 = prs_U_x*v.prs_q_z - prs_U_z*v.prs_q_x;
-    const real prs_Z_a_t_3 = prs_U_y*v.prs_q_x - prs_U_x*v.prs_q_y;
+    stage_prs_Z_dynamics(m, i, &v);
     /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, prs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, prs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, prs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[3*count + k], add, prs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, prs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, prs_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[0*count + k], add, v.prs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.prs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.prs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v.prs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v.prs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v.prs_Z_a_t_3);  /* Z_a_z_of_legs */
     o[0*count + k] = UNLESS(v.prs_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
         + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
-INLINE void Z_place_prs(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_prs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
-    const real Z_p_x = s[9*w + k];
+    const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[10*w + k];
+    const real Z_p_y = s[19*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[11*w + k];
+    const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[12*w + k];
+    const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[13*w + k];
+    const real Z_q_y = s[22*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[14*w + k];
+    const real Z_q_z = s[23*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
@@ -2708,9 +2543,9 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_prs[6*LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
     values v;
     Z_before(m, 1, 0, X, &v, s, t);
@@ -2727,10 +2562,10 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_prs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2753,7 +2588,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 
 /* ---- H ---- */
 INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2773,7 +2608,6 @@ INLINE void H_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
-    stage_prs_H_condition(m, i, &v);
     /* (prs-w_1) reciprocal vector 1 */
     o[0*count + k] = v.prs_w_1_x;
     o[1*count + k] = v.prs_w_1_y;
@@ -2790,7 +2624,7 @@ INLINE void H_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 }
 
 INLINE void H_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2803,9 +2637,9 @@ INLINE void H_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[8*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_prs[9*LEGS(LEGS_OF_prs)] = {0};
     values v;
     H_before(m, 1, 0, X, &v, s, t);
@@ -2817,9 +2651,10 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_prs[9*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2837,7 +2672,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 
 /* ---- Hk ---- */
 INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2870,7 +2705,7 @@ INLINE void Hk_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t 
 }
 
 INLINE void Hk_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *Hk, verdict *t)
+    real *Hk, status_flags *t)
 {
     Hk[i*w + k] = o[0*count + at];
     Hk[(NC + i)*w + k] = o[1*count + at];
@@ -2881,9 +2716,9 @@ INLINE void Hk_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, 
     t->total[k] += o[6*count + at];
 }
 
-APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
+APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_prs[7*LEGS(LEGS_OF_prs)] = {0};
     values v;
     Hk_before(m, 1, 0, X, &v, s, t);
@@ -2895,9 +2730,10 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
     }
 }
 
-INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, verdict *restrict t)
+INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, status_flags
+    *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_prs[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2915,7 +2751,7 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, ve
 
 /* ---- constraint_bias ---- */
 INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, verdict *t)
+    *v, real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2935,17 +2771,10 @@ INLINE void constraint_bias_legs_prs(const prepared *m, size_t w, size_t i, size
 {
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
+    stage_prs_V_X(m, w, i, j, V, &v);
     /* (prs-u_1) centripetal acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real prs_u_1_t = omega_y*v.prs_q_z - omega_z*v.prs_q_y;
-    const real omega_x = V[3*w + j];
-    const real prs_u_1_t_2 = omega_z*v.prs_q_x - omega_x*v.prs_q_z;
-    const real prs_u_1_t_3 = omega_x*v.prs_q_y - omega_y*v.prs_q_x;
-    const real prs_u_1_in_axes2_z = m->prs_base_frame_xz[i]*(omega_y*prs_u_1_t_3 -
-        omega_z*prs_u_1_t_2) + m->prs_base_frame_yz[i]*(omega_z*prs_u_1_t -
-        omega_x*prs_u_1_t_3) + m->prs_base_frame_zz[i]*(omega_x*prs_u_1_t_2 -
-        omega_y*prs_u_1_t);
+    const real prs_u_1_in_axes2_z = m->prs_base_frame_xz[i]*v.prs_u_1_x +
+        m->prs_base_frame_yz[i]*v.prs_u_1_y + m->prs_base_frame_zz[i]*v.prs_u_1_z;
     /* (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
     o[0*count + k] = prs_u_1_in_axes2_z;
@@ -2953,16 +2782,16 @@ INLINE void constraint_bias_legs_prs(const prepared *m, size_t w, size_t i, size
 }
 
 INLINE void constraint_bias_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *constraint_bias, verdict *t)
+    real *o, real *constraint_bias, status_flags *t)
 {
     constraint_bias[i*w + k] = o[0*count + at];
     t->total[k] += o[1*count + at];
 }
 
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
-    *constraint_bias, verdict *t)
+    *constraint_bias, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
     values v;
     constraint_bias_before(m, 1, 0, X, &v, s, t);
@@ -2975,9 +2804,9 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 }
 
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
-    *restrict constraint_bias, verdict *restrict t)
+    *restrict constraint_bias, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_prs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2994,10 +2823,12 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3007,20 +2838,21 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
-    /* (W_p) centripetal tensor of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real W_p_xy = omega_x*omega_y;
-    const real omega_z = V[5*w + k];
-    const real W_p_xz = omega_x*omega_z;
-    const real W_p_yz = omega_y*omega_z;
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -3032,28 +2864,31 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
     const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
-    const real f_p_t = omega_x*omega_x;
-    const real f_p_t_2 = omega_y*omega_y;
-    const real f_p_t_3 = omega_z*omega_z;
+    const real f_p_x = a_t_x*m->platform_mass + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z
+        - v->W_p_t_4*v->h_star_x;
+    const real f_p_y = a_t_y*m->platform_mass + v->B_p_yx*v->h_star_x + v->B_p_yz*v->h_star_z
+        - v->W_p_t_5*v->h_star_y;
+    const real f_p_z = a_t_z*m->platform_mass + v->B_p_zx*v->h_star_x + v->B_p_zy*v->h_star_y
+        - v->W_p_t_6*v->h_star_z;
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    const real mu_p_t = m->J_star_in_platform_xx*omega_in_platform_x +
+        m->J_star_in_platform_xy*omega_in_platform_y +
+        m->J_star_in_platform_xz*omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*omega_in_platform_x +
+        m->J_star_in_platform_yy*omega_in_platform_y +
+        m->J_star_in_platform_yz*omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*omega_in_platform_x +
+        m->J_star_in_platform_yz*omega_in_platform_y +
+        m->J_star_in_platform_zz*omega_in_platform_z;
+    const real alpha_x = A[3*w + k];
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->platform_mass + v->h_star_y*(W_p_xy - alpha_z) +
-        v->h_star_z*(alpha_y + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
-    const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->platform_mass + v->h_star_x*(alpha_z + W_p_xy) +
-        v->h_star_z*(W_p_yz - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->platform_mass + v->h_star_x*(W_p_xz - alpha_y) +
-        v->h_star_y*(alpha_x + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
-    /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
@@ -3061,29 +2896,29 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
         a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
+        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
         a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
+        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
         a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
     const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
         v->R_xz*mu_p_in_platform_z;
     const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
         v->R_yz*mu_p_in_platform_z;
     const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
         v->R_zz*mu_p_in_platform_z;
-    s[9*w + k] = f_p_x;
-    s[10*w + k] = f_p_y;
-    s[11*w + k] = f_p_z;
-    s[12*w + k] = mu_p_x;
-    s[13*w + k] = mu_p_y;
-    s[14*w + k] = mu_p_z;
+    s[18*w + k] = f_p_x;
+    s[19*w + k] = f_p_y;
+    s[20*w + k] = f_p_z;
+    s[21*w + k] = mu_p_x;
+    s[22*w + k] = mu_p_y;
+    s[23*w + k] = mu_p_z;
 }
 
 INLINE void required_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3092,18 +2927,17 @@ INLINE void required_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
-    stage_prs_A_X(w, j, A, &v);
     stage_prs_V_X(m, w, i, j, V, &v);
-    stage_prs_A_V_X(m, w, i, j, V, &v);
+    stage_prs_A_V_X(m, w, i, j, s, A, &v);
     stage_prs_legs_required(m, i, &v);
     /* (R_a) moment that actuators and external wrench must give */
     const real prs_R_a_t = v.prs_c_y*v.prs_q_z - v.prs_c_z*v.prs_q_y;
     const real prs_R_a_t_2 = v.prs_c_z*v.prs_q_x - v.prs_c_x*v.prs_q_z;
     const real prs_R_a_t_3 = v.prs_c_x*v.prs_q_y - v.prs_c_y*v.prs_q_x;
     /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-    const real prs_H_a_1_x = v.prs_q_y*v.prs_w_1_z - v.prs_q_z*v.prs_w_1_y;
-    const real prs_H_a_1_y = v.prs_q_z*v.prs_w_1_x - v.prs_q_x*v.prs_w_1_z;
-    const real prs_H_a_1_z = v.prs_q_x*v.prs_w_1_y - v.prs_q_y*v.prs_w_1_x;
+    const real prs_H_a_1_x_2 = v.prs_q_y*v.prs_w_1_z_2 - v.prs_q_z*v.prs_w_1_y_2;
+    const real prs_H_a_1_y_2 = v.prs_q_z*v.prs_w_1_x_2 - v.prs_q_x*v.prs_w_1_z_2;
+    const real prs_H_a_1_z_2 = v.prs_q_x*v.prs_w_1_y_2 - v.prs_q_y*v.prs_w_1_x_2;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, v.prs_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, v.prs_c_y);  /* R_t_y_of_legs */
@@ -3113,13 +2947,13 @@ INLINE void required_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[4*count + k], add, prs_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, prs_R_a_t_3);  /* R_a_z_of_legs */
     /* (prs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.prs_w_1_x;
-    o[1*count + k] = v.prs_w_1_y;
-    o[2*count + k] = v.prs_w_1_z;
+    o[0*count + k] = v.prs_w_1_x_2;
+    o[1*count + k] = v.prs_w_1_y_2;
+    o[2*count + k] = v.prs_w_1_z_2;
     /* (prs-H_a_1) */
-    o[3*count + k] = prs_H_a_1_x;
-    o[4*count + k] = prs_H_a_1_y;
-    o[5*count + k] = prs_H_a_1_z;
+    o[3*count + k] = prs_H_a_1_x_2;
+    o[4*count + k] = prs_H_a_1_y_2;
+    o[5*count + k] = prs_H_a_1_z_2;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     o[6*count + k] = m->prs_base_frame_xz[i];
     o[7*count + k] = m->prs_base_frame_yz[i];
@@ -3134,7 +2968,7 @@ INLINE void required_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void required_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *Hk, verdict *t)
+    *o, real *H, real *Hk, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -3156,23 +2990,23 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 {
     /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
-    const real f_p_x = s[9*w + k];
+    const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
-    const real f_p_y = s[10*w + k];
+    const real f_p_y = s[19*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
     const real R_t_z_of_legs = sums[2*w + k];
-    const real f_p_z = s[11*w + k];
+    const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
-    const real mu_p_x = s[12*w + k];
+    const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
-    const real mu_p_y = s[13*w + k];
+    const real mu_p_y = s[22*w + k];
     const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
-    const real mu_p_z = s[14*w + k];
+    const real mu_p_z = s[23*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
@@ -3185,12 +3019,12 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, real *Hk, verdict *t)
+    *required, real *H, real *Hk, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_prs[6*LEGS(LEGS_OF_prs)] = {0}, o_prs[14*LEGS(LEGS_OF_prs)] = {0};
     values v;
-    required_before(m, 1, 0, X, &v, s, t);
+    required_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         required_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, V, A, terms_prs, o_prs);
     }
@@ -3205,13 +3039,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, real *restrict Hk, verdict *restrict t)
+    real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_prs[14*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s, t);
+        required_before(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3230,7 +3064,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 
 /* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, verdict *t)
+    *v, real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3248,55 +3082,23 @@ INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, con
 INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
-    /* (prs-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real prs_S_x = t_x - m->prs_base_point_x[i] + R_xy*m->prs_platform_point_y[i] +
-        R_xz*m->prs_platform_point_z[i] + R_xx*m->prs_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real prs_S_y = t_y - m->prs_base_point_y[i] + R_yx*m->prs_platform_point_x[i] +
-        R_yz*m->prs_platform_point_z[i] + R_yy*m->prs_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real prs_S_z = t_z - m->prs_base_point_z[i] + R_zx*m->prs_platform_point_x[i] +
-        R_zy*m->prs_platform_point_y[i] + R_zz*m->prs_platform_point_z[i];
-    const real prs_S_in_axes0_x = prs_S_x*m->prs_base_frame_xx[i] +
-        prs_S_y*m->prs_base_frame_yx[i] + prs_S_z*m->prs_base_frame_zx[i];
-    const real prs_S_in_axes0_y = prs_S_x*m->prs_base_frame_xy[i] +
-        prs_S_y*m->prs_base_frame_yy[i] + prs_S_z*m->prs_base_frame_zy[i];
-    const real prs_S_in_axes0_z = prs_S_x*m->prs_base_frame_xz[i] +
-        prs_S_y*m->prs_base_frame_yz[i] + prs_S_z*m->prs_base_frame_zz[i];
-    /* (prs-disc_1) discriminant of the distance equation */
-    const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-    const real prs_disc_1 = m->prs_size_t[i] + prs_S_in_axes0_x*prs_S_in_axes0_x +
-        prs_S_in_axes0_z*prs_S_in_axes0_z - prs_disc_1_t;
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
     /* (prs-q_1) displacement of joint 1 */
-    const real prs_q_1_t = -m->prs_branch_1[i]*root(prs_disc_1);
-    const real prs_q_1 = prs_S_in_axes0_x - prs_q_1_t;
-    /* (prs-rho2_2) squared amplitude */
-    const real prs_rho2_2 = m->prs_size_t[i]*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1);
+    const real prs_q_1 = v.prs_S_in_axes0_x - v.prs_q_1_t;
     /* (prs-q_2) displacement of joint 2 */
-    const real prs_q_2_t = 1/(root(prs_rho2_2));
-    const real prs_q_2 = angle(prs_S_in_axes0_y*m->prs_platform_joint_offset_x[i]*prs_q_2_t,
-        m->prs_platform_joint_offset_x[i]*prs_q_1_t*prs_q_2_t);
+    const real prs_q_2 = angle(v.prs_s_2, v.prs_c_2);
     /* (prs-q_1) */
     o[0*count + k] = prs_q_1;
     /* (prs-q_2) */
     o[1*count + k] = prs_q_2;
     o[4*count + k] = prs_q_1 + prs_q_2;
-    o[2*count + k] = UNLESS(prs_disc_1 >= 0);
-    o[3*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i]);
+    o[2*count + k] = UNLESS(v.prs_disc_1 >= 0);
+    o[3*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i]);
 }
 
 INLINE void inverse_kinematics_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[2*i*w + k] = o[0*count + at];
     q[(1 + 2*i)*w + k] = o[1*count + at];
@@ -3305,9 +3107,9 @@ INLINE void inverse_kinematics_place_prs(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
     values v;
     inverse_kinematics_before(m, 1, 0, X, &v, s, t);
@@ -3320,9 +3122,9 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_prs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3340,7 +3142,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 
 /* ---- joint_rates ---- */
 INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, verdict *t)
+    real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3360,39 +3162,23 @@ INLINE void joint_rates_legs_prs(const prepared *m, size_t w, size_t i, size_t j
 {
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
-    /* (prs-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real prs_S_dot_x = t_dot_x + omega_y*v.prs_q_z - omega_z*v.prs_q_y;
-    const real omega_x = V[3*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real prs_S_dot_y = t_dot_y + omega_z*v.prs_q_x - omega_x*v.prs_q_z;
-    const real t_dot_z = V[2*w + j];
-    const real prs_S_dot_z = t_dot_z + omega_x*v.prs_q_y - omega_y*v.prs_q_x;
-    /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-    const real prs_v_2_t = 1/(root(v.prs_rho2_2));
-    const real prs_v_2_in_axes0_y =
-        -m->prs_branch_1[i]*root(v.prs_disc_1)*m->prs_platform_joint_offset_x[i]*m->prs_platform_joint_offset_x[i]*prs_v_2_t;
+    stage_prs_V_X(m, w, i, j, V, &v);
     /* (prs-qd_1) rate of joint 1 */
-    const real prs_qd_1_t = -(prs_S_dot_x*m->prs_base_frame_xy[i] +
-        prs_S_dot_y*m->prs_base_frame_yy[i] +
-        prs_S_dot_z*m->prs_base_frame_zy[i])/prs_v_2_in_axes0_y;
-    const real prs_qd_1 = prs_S_dot_x*m->prs_base_frame_xx[i] +
-        prs_S_dot_y*m->prs_base_frame_yx[i] + prs_S_dot_z*m->prs_base_frame_zx[i] -
-        v.prs_S_in_axes0_y*m->prs_platform_joint_offset_x[i]*m->prs_platform_joint_offset_x[i]*prs_qd_1_t*prs_v_2_t;
+    const real prs_qd_1 = v.prs_S_dot_x*m->prs_base_frame_xx[i] +
+        v.prs_S_dot_y*m->prs_base_frame_yx[i] + v.prs_S_dot_z*m->prs_base_frame_zx[i] +
+        v.prs_qd_1_t*v.prs_v_2_in_axes0_x;
     /* (prs-qd_1) */
     o[0*count + k] = prs_qd_1;
     /* (prs-qd_2) rate of joint 2 */
-    o[1*count + k] = -prs_qd_1_t;
-    o[4*count + k] = prs_qd_1 + prs_qd_1_t;
+    o[1*count + k] = -v.prs_qd_1_t;
+    o[4*count + k] = prs_qd_1 + v.prs_qd_1_t;
     o[2*count + k] = UNLESS(v.prs_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
-        + UNLESS(magnitude(prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
+        + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
 INLINE void joint_rates_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[2*i*w + k] = o[0*count + at];
     qd[(1 + 2*i)*w + k] = o[1*count + at];
@@ -3401,9 +3187,10 @@ INLINE void joint_rates_place_prs(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
     values v;
     joint_rates_before(m, 1, 0, X, &v, s, t);
@@ -3416,9 +3203,9 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_prs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3435,10 +3222,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
+    real *V, const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3448,6 +3237,15 @@ INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, co
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -3456,33 +3254,20 @@ INLINE void joint_accelerations_legs_prs(const prepared *m, size_t w, size_t i, 
 {
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
-    stage_prs_A_X(w, j, A, &v);
     stage_prs_V_X(m, w, i, j, V, &v);
-    stage_prs_A_V_X(m, w, i, j, V, &v);
-    /* (prs-qd_2) rate of joint 2 */
-    const real prs_qd_2_t = -1/v.prs_v_2_in_axes0_y;
-    const real prs_qd_2_t_2 = prs_qd_2_t*(v.prs_S_dot_x*m->prs_base_frame_xy[i] +
-        v.prs_S_dot_y*m->prs_base_frame_yy[i] + v.prs_S_dot_z*m->prs_base_frame_zy[i]);
-    /* (prs-rel) acceleration of the connection point left to the joint accelerations */
-    const real prs_rel_in_axes2_x = v.prs_S_ddot_t_2*v.prs_s_2 + v.prs_S_ddot_t*v.prs_c_2 +
-        m->prs_platform_joint_offset_x[i]*prs_qd_2_t_2*prs_qd_2_t_2;
+    stage_prs_A_V_X(m, w, i, j, s, A, &v);
     /* (prs-qdd_1) acceleration of joint 1 */
-    const real prs_qdd_1_t = prs_qd_2_t*(v.prs_S_ddot_in_axes2_y*v.prs_c_2 +
-        prs_rel_in_axes2_x*v.prs_s_2);
-    const real prs_qdd_1 = v.prs_c_2*prs_rel_in_axes2_x - v.prs_S_ddot_in_axes2_y*v.prs_s_2 -
-        m->prs_platform_joint_offset_x[i]*prs_qdd_1_t*v.prs_s_2;
-    /* (prs-qdd_1) */
-    o[0*count + k] = prs_qdd_1;
+    o[0*count + k] = v.prs_qdd_1;
     /* (prs-qdd_2) acceleration of joint 2 */
-    o[1*count + k] = -prs_qdd_1_t;
-    o[4*count + k] = prs_qdd_1 + prs_qdd_1_t;
+    o[1*count + k] = -v.prs_qdd_1_t;
+    o[4*count + k] = v.prs_qdd_1 + v.prs_qdd_1_t;
     o[2*count + k] = UNLESS(v.prs_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
         + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
 INLINE void joint_accelerations_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[2*i*w + k] = o[0*count + at];
     qdd[(1 + 2*i)*w + k] = o[1*count + at];
@@ -3492,12 +3277,12 @@ INLINE void joint_accelerations_place_prs(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s, t);
+    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         joint_accelerations_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, A, o_prs);
     }
@@ -3507,13 +3292,13 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_prs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s, t);
+        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3527,7 +3312,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 
 /* ---- constraints ---- */
 INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, verdict *t)
+    real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3545,42 +3330,23 @@ INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real
 INLINE void constraints_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, real *o)
 {
-    /* (prs-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real prs_S_x = t_x - m->prs_base_point_x[i] + R_xy*m->prs_platform_point_y[i] +
-        R_xz*m->prs_platform_point_z[i] + R_xx*m->prs_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real prs_S_y = t_y - m->prs_base_point_y[i] + R_yx*m->prs_platform_point_x[i] +
-        R_yz*m->prs_platform_point_z[i] + R_yy*m->prs_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real prs_S_z = t_z - m->prs_base_point_z[i] + R_zx*m->prs_platform_point_x[i] +
-        R_zy*m->prs_platform_point_y[i] + R_zz*m->prs_platform_point_z[i];
-    const real prs_S_in_axes0_z = prs_S_x*m->prs_base_frame_xz[i] +
-        prs_S_y*m->prs_base_frame_yz[i] + prs_S_z*m->prs_base_frame_zz[i];
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
     /* (prs-phi_c1) loop-closure residual along the constraint force */
-    o[0*count + k] = prs_S_in_axes0_z;
-    o[1*count + k] = prs_S_in_axes0_z;
+    o[0*count + k] = v.prs_S_in_axes0_z;
+    o[1*count + k] = v.prs_S_in_axes0_z;
 }
 
 INLINE void constraints_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *constraints, verdict *t)
+    real *o, real *constraints, status_flags *t)
 {
     constraints[i*w + k] = o[0*count + at];
     t->total[k] += o[1*count + at];
 }
 
-APART void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
+APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
     values v;
     constraints_before(m, 1, 0, X, &v, s, t);
@@ -3593,9 +3359,9 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 }
 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_prs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3612,10 +3378,12 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
+    real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3625,6 +3393,15 @@ INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, va
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -3633,9 +3410,8 @@ INLINE void legs_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_
 {
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
-    stage_prs_A_X(w, j, A, &v);
     stage_prs_V_X(m, w, i, j, V, &v);
-    stage_prs_A_V_X(m, w, i, j, V, &v);
+    stage_prs_A_V_X(m, w, i, j, s, A, &v);
     stage_prs_legs_required(m, i, &v);
     /* (prs-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -3643,9 +3419,9 @@ INLINE void legs_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_
     o[1*count + k] = v.prs_c_y;
     o[2*count + k] = v.prs_c_z;
     /* (prs-w_1) reciprocal vector 1 */
-    o[3*count + k] = v.prs_w_1_x;
-    o[4*count + k] = v.prs_w_1_y;
-    o[5*count + k] = v.prs_w_1_z;
+    o[3*count + k] = v.prs_w_1_x_2;
+    o[4*count + k] = v.prs_w_1_y_2;
+    o[5*count + k] = v.prs_w_1_z_2;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     o[6*count + k] = m->prs_base_frame_xz[i];
     o[7*count + k] = m->prs_base_frame_yz[i];
@@ -3656,7 +3432,7 @@ INLINE void legs_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, real *constraint_direction, verdict *t)
+    real *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
     leg_force[3*i*w + k] = o[0*count + at];
     leg_force[(3*i + 1)*w + k] = o[1*count + at];
@@ -3672,12 +3448,12 @@ INLINE void legs_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, real *constraint_direction, verdict *t)
+    *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_prs[11*LEGS(LEGS_OF_prs)] = {0};
     values v;
-    legs_before(m, 1, 0, X, &v, s, t);
+    legs_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         legs_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, A, o_prs);
     }
@@ -3688,7 +3464,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 
 /* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3710,74 +3486,34 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(m->platform_mass*t_x +
-        v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
-        v->R_xx*m->h_star_in_platform_x) + m->gravity_y*(m->platform_mass*t_y +
-        v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
-        v->R_yy*m->h_star_in_platform_y) + m->gravity_z*(m->platform_mass*t_z +
-        v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
-        v->R_zz*m->h_star_in_platform_z);
-    s[9*w + k] = potential_t;
+    const real potential_t = m->gravity_x*(m->platform_mass*t_x + v->h_star_x) +
+        m->gravity_y*(m->platform_mass*t_y + v->h_star_y) + m->gravity_z*(m->platform_mass*t_z
+        + v->h_star_z);
+    s[18*w + k] = potential_t;
 }
 
 INLINE void potential_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    /* (prs-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real prs_S_x = t_x - m->prs_base_point_x[i] + R_xy*m->prs_platform_point_y[i] +
-        R_xz*m->prs_platform_point_z[i] + R_xx*m->prs_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real prs_S_y = t_y - m->prs_base_point_y[i] + R_yx*m->prs_platform_point_x[i] +
-        R_yz*m->prs_platform_point_z[i] + R_yy*m->prs_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real prs_S_z = t_z - m->prs_base_point_z[i] + R_zx*m->prs_platform_point_x[i] +
-        R_zy*m->prs_platform_point_y[i] + R_zz*m->prs_platform_point_z[i];
-    const real prs_S_in_axes0_x = prs_S_x*m->prs_base_frame_xx[i] +
-        prs_S_y*m->prs_base_frame_yx[i] + prs_S_z*m->prs_base_frame_zx[i];
-    const real prs_S_in_axes0_y = prs_S_x*m->prs_base_frame_xy[i] +
-        prs_S_y*m->prs_base_frame_yy[i] + prs_S_z*m->prs_base_frame_zy[i];
-    const real prs_S_in_axes0_z = prs_S_x*m->prs_base_frame_xz[i] +
-        prs_S_y*m->prs_base_frame_yz[i] + prs_S_z*m->prs_base_frame_zz[i];
-    /* (prs-disc_1) discriminant of the distance equation */
-    const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-    const real prs_disc_1 = m->prs_size_t[i] + prs_S_in_axes0_x*prs_S_in_axes0_x +
-        prs_S_in_axes0_z*prs_S_in_axes0_z - prs_disc_1_t;
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
     /* (prs-q_1) displacement of joint 1 */
-    const real prs_q_1_t = -m->prs_branch_1[i]*root(prs_disc_1);
-    const real prs_q_1 = prs_S_in_axes0_x - prs_q_1_t;
-    /* (prs-rho2_2) squared amplitude */
-    const real prs_rho2_2 = m->prs_size_t[i]*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1);
-    /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real prs_c_2_t = 1/(root(prs_rho2_2));
-    const real prs_c_2 = prs_c_2_t*m->prs_platform_joint_offset_x[i]*prs_q_1_t;
-    /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-    const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*m->prs_platform_joint_offset_x[i];
+    const real prs_q_1 = v.prs_S_in_axes0_x - v.prs_q_1_t;
     /* (potential) */
     const real prs_potential_t_4 = m->prs_b_in_axes0_x[i] + prs_q_1;
     const real prs_potential_t_5 = m->prs_potential_t_3[i] +
         m->prs_g_in_axes0_x[i]*(m->prs_h_1_in_spec0_x[i] +
         m->prs_link1_mass[i]*prs_potential_t_4 + m->prs_link2_mass[i]*prs_potential_t_4 +
-        prs_c_2*m->prs_h_2_in_spec2_x[i] - m->prs_h_2_in_spec2_y[i]*prs_s_2) +
+        v.prs_c_2*m->prs_h_2_in_spec2_x[i] - m->prs_h_2_in_spec2_y[i]*v.prs_s_2) +
         m->prs_g_in_axes0_y[i]*(m->prs_h_1_in_spec0_y[i] + m->prs_potential_t[i] +
-        m->prs_potential_t_2[i] + prs_c_2*m->prs_h_2_in_spec2_y[i] +
-        m->prs_h_2_in_spec2_x[i]*prs_s_2);
+        m->prs_potential_t_2[i] - v.prs_P_c_2_in_axes0_x);
     /* (potential) */
     gather(&terms[0*count + k], add, prs_potential_t_5);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(prs_disc_1 >= 0);
-    o[1*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i]);
+    o[0*count + k] = UNLESS(v.prs_disc_1 >= 0);
+    o[1*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i]);
 }
 
-INLINE void potential_place_prs(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_prs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -3787,15 +3523,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 {
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
-    const real potential_t = s[9*w + k];
+    const real potential_t = s[18*w + k];
     const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[10] = {0}, sums[1] = {0};
+    real s[19] = {0}, sums[1] = {0};
     real terms_prs[LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
     values v;
     potential_before(m, 1, 0, X, &v, s, t);
@@ -3814,7 +3550,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3837,7 +3573,6 @@ INLINE void condition_legs_prs(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
-    stage_prs_H_condition(m, i, &v);
     /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real prs_pivot_size = magnitude(v.prs_rho2_2);
@@ -3881,7 +3616,7 @@ INLINE void condition_legs_prs(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void condition_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *Hk, real *pivots, real *reach, verdict *t)
+    *o, real *H, real *Hk, real *pivots, real *reach, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -3903,7 +3638,7 @@ INLINE void condition_place_prs(size_t w, size_t i, size_t k, size_t at, size_t 
 }
 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
-    *lengths, verdict *t)
+    *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_prs = sums[0*w + k];
@@ -3914,9 +3649,9 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
-    *pivots, real *reach, verdict *t)
+    *pivots, real *reach, status_flags *t)
 {
-    real s[9] = {0}, sums[1] = {0};
+    real s[18] = {0}, sums[1] = {0};
     real terms_prs[LEGS(LEGS_OF_prs)] = {0}, o_prs[17*LEGS(LEGS_OF_prs)] = {0};
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3936,249 +3671,228 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
 
 int tripod_3prs_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int tripod_3prs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int tripod_3prs_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int tripod_3prs_Hk(const prepared *m, const real *X, real *Hk_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     Hk_run(m, X, Hk_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    return settled(&why, NV*NC, Hk_out);
+    return final_status(&why, NV*NC, Hk_out);
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
     real X_in[NQ*LANES], Hk[NV*NC*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     Hk_run_lanes(m, X, Hk, &why);
-    suspect(&why, code);
-    deliver(NV*NC, Hk, Hk_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NC, Hk, Hk_out);
 }
 
 int tripod_3prs_constraints(const prepared *m, const real *X, real *constraints_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     constraints_run(m, X, constraints_out, &why);
     if (!is_finite(why.total[0])) {
         check(3, 1, constraints_out, why.overflow);
     }
-    return settled(&why, 3, constraints_out);
+    return final_status(&why, 3, constraints_out);
 }
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
     real X_in[NQ*LANES], constraints[3*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     constraints_run_lanes(m, X, constraints, &why);
-    suspect(&why, code);
-    deliver(3, constraints, constraints_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(3, constraints, constraints_out);
 }
 
 int tripod_3prs_constraint_bias(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     constraint_bias_run(m, X, V, constraint_bias_out, &why);
     if (!is_finite(why.total[0])) {
         check(3, 1, constraint_bias_out, why.overflow);
     }
-    return settled(&why, 3, constraint_bias_out);
+    return final_status(&why, 3, constraint_bias_out);
 }
 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[3*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     constraint_bias_run_lanes(m, X, V, constraint_bias, &why);
-    suspect(&why, code);
-    deliver(3, constraint_bias, constraint_bias_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(3, constraint_bias, constraint_bias_out);
 }
 
 int tripod_3prs_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int tripod_3prs_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int tripod_3prs_joint_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int tripod_3prs_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
     real Hk[NV*NC] = {0}, constraint_bias[3] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, Hk, constraint_bias, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
@@ -4187,9 +3901,9 @@ int tripod_3prs_dynamics(const prepared *m, const real *X, const real *V, real *
     }
     check(NV*NC, 1, Hk, why.overflow);
     check(3, 1, constraint_bias, why.overflow);
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4197,17 +3911,17 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES],
         constraint_bias[3*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     add_up(NV*NC, Hk, why.total);
     add_up(3, constraint_bias, why.total);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -4389,14 +4103,9 @@ int tripod_3prs_inverse_dynamics(const prepared *m, const real *X, const real *V
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
         {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -4415,8 +4124,8 @@ int tripod_3prs_inverse_dynamics(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NU, tau, tau_out);
     copy(NC, lambda_, lambda_out);
-    settled(&why, NU, tau_out);
-    return settled(&why, NC, lambda_out);
+    final_status(&why, NU, tau_out);
+    return final_status(&why, NC, lambda_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4425,7 +4134,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES], beside_1[NV*NV*LANES] = {0},
         solve_1[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4441,9 +4150,9 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     const real *const lambda_ = solve_1 + NU*LANES;
     add_up(NU, tau, why.total);
     add_up(NC, lambda_, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
-    deliver(NC, lambda_, lambda_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
+    copy_side_by_side(NC, lambda_, lambda_out);
 }
 
 int tripod_3prs_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
@@ -4453,14 +4162,9 @@ int tripod_3prs_forward_dynamics(const prepared *m, const real *X, const real *V
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, constraint_bias[3] = {0},
         times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, negative_1[3] = {0}, join_1[9] =
         {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV + NC))];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -4482,8 +4186,8 @@ int tripod_3prs_forward_dynamics(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    settled(&why, NV, A_out);
-    return settled(&why, NC, lambda_out);
+    final_status(&why, NV, A_out);
+    return final_status(&why, NC, lambda_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4493,7 +4197,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[3*LANES], times_1[NV*LANES] =
         {0}, add_1[NV*LANES], subtract_1[NV*LANES], negative_1[3*LANES], join_1[9*LANES] = {0},
         solve_1[((NV + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4517,9 +4221,9 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     const real *const lambda_ = solve_1 + NV*LANES;
     add_up(NV, A, why.total);
     add_up(NC, lambda_, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
-    deliver(NC, lambda_, lambda_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
+    copy_side_by_side(NC, lambda_, lambda_out);
 }
 
 int tripod_3prs_complete_acceleration(const prepared *m, const real *X, const real *V, const real
@@ -4529,13 +4233,11 @@ int tripod_3prs_complete_acceleration(const prepared *m, const real *X, const re
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int tripod_3prs_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -4544,32 +4246,13 @@ int tripod_3prs_leg_reactions(const prepared *m, const real *X, const real *V, c
     static const real no_wrench[NW] = {0};
     static const size_t places_add_forces_1[] = {0, 1, 2};
     static const size_t places_forces[] = {0, 1, 2};
-    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
-        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0},
-        constraint_direction[3*NC] = {0}, add_forces_1[NL*NL] = {0}, forces[NL*NL] = {0},
-        work[NV*PADDED(NV)];
-    verdict why;
+    real split_1[3] = {0}, split_2[3] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0},
+        constraint_direction[3*NC] = {0}, add_forces_1[NL*NL] = {0}, forces[NL*NL] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, Hk, &why);
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - wrench[i];
-    }
-    beside(NV, NU, NC, H, Hk, beside_1);
-    eliminate_6(1, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NV, 1, beside_1, work);
-        solve_apart(NV, subtract_1, work, solve_1, why.singular);
-        check(NV, 1, solve_1, why.overflow);
-    }
-    const real *const split_1 = solve_1;
-    const real *const split_2 = solve_1 + 3;
+    flag_status(tripod_3prs_inverse_dynamics(m, X, V, A, wrench, split_1, split_2), &why);
     legs_run(m, X, V, A, leg_force, actuator, constraint_direction, &why);
     for (size_t i = 0; i < NL*NL; ++i) {
         add_forces_1[i] = leg_force[i];
@@ -4579,22 +4262,16 @@ int tripod_3prs_leg_reactions(const prepared *m, const real *X, const real *V, c
         forces[i] = add_forces_1[i];
     }
     add_forces(NL, NL, 1, places_forces, split_2, constraint_direction, forces);
-    check(NL*NL, 1, forces, why.overflow);
-    copy(NL*NL, forces, forces_out);
-    return settled(&why, NL*NL, forces_out);
+    return finished(NL*NL, forces, forces_out, &why);
 }
 
 int tripod_3prs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -4603,8 +4280,8 @@ int tripod_3prs_energy(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int tripod_3prs_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -4614,9 +4291,9 @@ int tripod_3prs_condition(const prepared *m, const real *X, real *sigma_out, rea
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
@@ -4637,8 +4314,8 @@ int tripod_3prs_condition(const prepared *m, const real *X, real *sigma_out, rea
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NU, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NU, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int tripod_3prs_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
@@ -4649,9 +4326,9 @@ int tripod_3prs_condition_constrained(const prepared *m, const real *X, real *si
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
@@ -4672,8 +4349,8 @@ int tripod_3prs_condition_constrained(const prepared *m, const real *X, real *si
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int tripod_3prs_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4686,13 +4363,12 @@ int tripod_3prs_manipulability(const prepared *m, const real *X, real *measure_o
         {0}, choose_length_2[1] = {0}, divide_rows_2[NV*NC] = {0}, transposed_1[NC*NV] = {0},
         null_basis_1[NV*NC] = {0}, transposed_2[NC*NV] = {0}, product_1[NC*NU] = {0},
         singular_values_1[NC] = {0}, measure[1] = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4702,9 +4378,8 @@ int tripod_3prs_manipulability(const prepared *m, const real *X, real *measure_o
         divide_rows_1[i] = H[i];
     }
     divide_rows(NU, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
-    const real *const entry_2 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_2[i] = entry_2[i] - entry_2[i];
+        subtract_2[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_2[i] = subtract_2[i] > 0 ? subtract_2[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4726,8 +4401,8 @@ int tripod_3prs_manipulability(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int tripod_3prs_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -4737,14 +4412,13 @@ int tripod_3prs_singularity_distance(const prepared *m, const real *X, real *act
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
         beside_1[NV*NV] = {0}, subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] =
         {0}, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
     beside(NV, NU, NC, H, Hk, beside_1);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -4762,21 +4436,18 @@ int tripod_3prs_singularity_distance(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
     real q[NJ] = {0}, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] = {0}, constraints[3] =
-        {0}, negative_1[3] = {0}, gap[6] = {0};
-    verdict why;
+        {0}, negative_1[3] = {0}, residual[6] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(3, 1, tripod_3prs_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
@@ -4786,36 +4457,32 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     for (size_t i = 0; i < 3; ++i) {
         negative_1[i] = -constraints[i];
     }
-    beside(1, NU, 3, subtract_1, negative_1, gap);
-    check(6, 1, gap, why.overflow);
-    copy(6, gap, gap_out);
-    return settled(&why, 6, gap_out);
+    beside(1, NU, 3, subtract_1, negative_1, residual);
+    return finished(6, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H, &why);
     Hk_run(m, X, Hk, &why);
     beside(NV, NU, NC, H, Hk, slope);
-    check(NV*NV, 1, slope, why.overflow);
-    copy(NV*NV, slope, slope_out);
-    return settled(&why, NV*NV, slope_out);
+    return finished(NV*NV, slope, slope_out, &why);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = 6, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -4827,21 +4494,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -4855,56 +4522,48 @@ int tripod_3prs_forward_kinematics(const prepared *m, const real *q_actuated, co
     *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
-static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
+static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
 {
-    real constraints[3] = {0}, gap[NC] = {0};
-    verdict why;
+    real constraints[3] = {0}, residual[NC] = {0};
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < NC; ++i) {
-        gap[i] = -constraints[i];
+        residual[i] = -constraints[i];
     }
-    check(NC, 1, gap, why.overflow);
-    copy(NC, gap, gap_out);
-    return settled(&why, NC, gap_out);
+    return finished(NC, residual, residual_out, &why);
 }
 
 static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     Hk_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NC, slope_out);
+    return final_status(&why, NV*NC, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_constraint_gap(const prepared *m, const real *start, real *found)
+static int search_constraint_residual(const prepared *m, const real *start, real *found)
 {
     enum { N = NC, TRIALS = 1 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = constraint_gap_one(m, found, gap);
-    size = largest(gap, N);
+    code = constraint_residual_one(m, found, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > MET; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -4916,21 +4575,21 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = constraint_gap_one(m, trial, next);
+            tried = constraint_residual_one(m, trial, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > MET/10)) {
             break;
@@ -4943,13 +4602,11 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 int tripod_3prs_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
-    blame(search_constraint_gap(m, X, projected), &why);
-    check(NQ, 1, projected, why.overflow);
-    copy(NQ, projected, projected_out);
-    return settled(&why, NQ, projected_out);
+    check_one(NQ, X, why.invalid);
+    flag_status(search_constraint_residual(m, X, projected), &why);
+    return finished(NQ, projected, projected_out, &why);
 }
 
 int tripod_3prs_dissipation(const prepared *m, const real *X, const real *V, real
@@ -4958,289 +4615,202 @@ int tripod_3prs_dissipation(const prepared *m, const real *X, const real *V, rea
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int tripod_3prs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int tripod_3prs_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int tripod_3prs_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int tripod_3prs_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, tripod_3prs_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int tripod_3prs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, tripod_3prs_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int tripod_3prs_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, tripod_3prs_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int tripod_3prs_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int tripod_3prs_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
-    check(9, 1, R, why.overflow);
-    copy(9, R, R_out);
-    return settled(&why, 9, R_out);
+    return finished(9, R, R_out, &why);
 }
 
 int tripod_3prs_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(R, 9);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(9, 1, R, why.invalid);
-    }
+    check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int tripod_3prs_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const V_from_3 = V + 3;
     const real *const X_from_3 = X + 3;
     quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
-    const real *const V_from_0 = V;
-    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    beside(1, 3, 4, V, quaternion_rate_1, X_dot);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int tripod_3prs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(rpy, 3);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(3, 1, rpy, why.invalid);
-    }
+    check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int tripod_3prs_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
-    const real *const X_from_0 = X;
+    check_two(NQ, X, NV, step, why.invalid);
     const real *const X_from_3 = X + 3;
-    const real *const step_from_0 = step;
     const real *const step_from_3 = step + 3;
     turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X_from_0[i] + step_from_0[i];
+        add_1[i] = X[i] + step[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int tripod_3prs_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
+    check_two(NQ, X0, NQ, X1, why.invalid);
     const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
     const real *const X1_from_3 = X1 + 3;
     turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
+        subtract_1[i] = X1[i] - X0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int tripod_3prs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
-        turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
-    verdict why;
+    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
-    const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
-    const real *const X1_from_3 = X1 + 3;
-    turn_between(X0_from_3, X1_from_3, turn_between_1);
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
-    }
-    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(tripod_3prs_difference(X0, X1, join_1), &why);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const X0_from_0_2 = X0;
     const real *const X0_from_3_2 = X0 + 3;
-    const real *const scale_1_from_0 = scale_1;
     const real *const scale_1_from_3 = scale_1 + 3;
     turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
+        add_1[i] = X0[i] + scale_1[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

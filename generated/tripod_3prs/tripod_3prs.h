@@ -137,14 +137,14 @@ int tripod_3prs_M(const tripod_3prs_model *model, const tripod_3prs_real *X, tri
 size_t tripod_3prs_M_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
     tripod_3prs_real *M, int *status);
 
-/* Velocity and gravity terms Z. 402 mul, 285 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 411 mul, 291 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int tripod_3prs_Z(const tripod_3prs_model *model, const tripod_3prs_real *X, const
     tripod_3prs_real *V, tripod_3prs_real *Z);
 size_t tripod_3prs_Z_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
     const tripod_3prs_real *V, tripod_3prs_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 174 mul, 114 add, 6 div, 6 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 177 mul, 114 add, 6 div, 6 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int tripod_3prs_H(const tripod_3prs_model *model, const tripod_3prs_real *X, tripod_3prs_real *H);
 size_t tripod_3prs_H_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
@@ -178,14 +178,14 @@ int tripod_3prs_inverse_kinematics(const tripod_3prs_model *model, const tripod_
 size_t tripod_3prs_inverse_kinematics_batch(const tripod_3prs_model *model, size_t n, const
     tripod_3prs_real *X, tripod_3prs_real *q, int *status);
 
-/* Rates of all joints. 135 mul, 105 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 138 mul, 105 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int tripod_3prs_joint_rates(const tripod_3prs_model *model, const tripod_3prs_real *X, const
     tripod_3prs_real *V, tripod_3prs_real *rates);
 size_t tripod_3prs_joint_rates_batch(const tripod_3prs_model *model, size_t n, const
     tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real *rates, int *status);
 
-/* Accelerations of all joints. 216 mul, 162 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 213 mul, 162 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int tripod_3prs_joint_accelerations(const tripod_3prs_model *model, const tripod_3prs_real *X,
     const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real *accelerations);
@@ -193,7 +193,7 @@ size_t tripod_3prs_joint_accelerations_batch(const tripod_3prs_model *model, siz
     tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 735 mul, 540 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 708 mul, 522 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3prs_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const
     tripod_3prs_real *V, tripod_3prs_real *M, tripod_3prs_real *Z, tripod_3prs_real *H);
@@ -201,7 +201,7 @@ size_t tripod_3prs_dynamics_batch(const tripod_3prs_model *model, size_t n, cons
     *X, const tripod_3prs_real *V, tripod_3prs_real *M, tripod_3prs_real *Z, tripod_3prs_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 507 mul, 372 add, 6 div, 6 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 498 mul, 363 add, 6 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU), lambda (NC). */
 int tripod_3prs_inverse_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const
@@ -211,7 +211,7 @@ size_t tripod_3prs_inverse_dynamics_batch(const tripod_3prs_model *model, size_t
     tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, const
     tripod_3prs_real *wrench, tripod_3prs_real *tau, tripod_3prs_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 735 mul, 540 add, 6 div, 6 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 708 mul, 522 add, 6 div, 6 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV), lambda (NC). */
 int tripod_3prs_forward_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const
@@ -232,7 +232,7 @@ size_t tripod_3prs_complete_acceleration_batch(const tripod_3prs_model *model, s
     tripod_3prs_real *wrench, tripod_3prs_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 360 mul, 246 add, 6 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 357 mul, 246 add, 6 div, 6 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int tripod_3prs_leg_reactions(const tripod_3prs_model *model, const tripod_3prs_real *X, const
     tripod_3prs_real *V, const tripod_3prs_real *A, const tripod_3prs_real *wrench,
@@ -252,7 +252,7 @@ size_t tripod_3prs_energy_batch(const tripod_3prs_model *model, size_t n, const 
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 208 mul, 144 add, 6 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 211 mul, 144 add, 6 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (3), legs (3). */
 int tripod_3prs_condition(const tripod_3prs_model *model, const tripod_3prs_real *X,
     tripod_3prs_real *sigma, tripod_3prs_real *legs);
@@ -261,7 +261,7 @@ size_t tripod_3prs_condition_batch(const tripod_3prs_model *model, size_t n, con
 
 /* The same with the singular values of [H Hk], which inverse dynamics solves. The length is the
    rms distance of the platform points from their centroid, or where they coincide the rms size of
-   the legs. 208 mul, 144 add, 6 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   the legs. 211 mul, 144 add, 6 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (3). */
 int tripod_3prs_condition_constrained(const tripod_3prs_model *model, const tripod_3prs_real *X,
     tripod_3prs_real *sigma, tripod_3prs_real *legs);
@@ -270,14 +270,14 @@ size_t tripod_3prs_condition_constrained_batch(const tripod_3prs_model *model, s
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
    the least over the largest of them. Of N^T H, N an orthonormal basis of the motions that
-   constraints leave. 208 mul, 144 add, 6 div, 10 sqrt, 0 trig; the singular values apart. In: X
+   constraints leave. 211 mul, 144 add, 6 div, 10 sqrt, 0 trig; the singular values apart. In: X
    (NQ). Out: measure (1), isotropy (1). */
 int tripod_3prs_manipulability(const tripod_3prs_model *model, const tripod_3prs_real *X,
     tripod_3prs_real *measure, tripod_3prs_real *isotropy);
 size_t tripod_3prs_manipulability_batch(const tripod_3prs_model *model, size_t n, const
     tripod_3prs_real *X, tripod_3prs_real *measure, tripod_3prs_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 208
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 211
    mul, 144 add, 6 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int tripod_3prs_singularity_distance(const tripod_3prs_model *model, const tripod_3prs_real *X,
@@ -335,14 +335,14 @@ int tripod_3prs_actuator_positions(const tripod_3prs_model *model, const tripod_
 size_t tripod_3prs_actuator_positions_batch(const tripod_3prs_model *model, size_t n, const
     tripod_3prs_real *X, tripod_3prs_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 135 mul, 105 add, 6 div, 6 sqrt, 0 trig. In:
+/* Rates of the actuated joints, in the order of tau. 138 mul, 105 add, 6 div, 6 sqrt, 0 trig. In:
    X (NQ), V (NV). Out: rates (NU). */
 int tripod_3prs_actuator_rates(const tripod_3prs_model *model, const tripod_3prs_real *X, const
     tripod_3prs_real *V, tripod_3prs_real *rates);
 size_t tripod_3prs_actuator_rates_batch(const tripod_3prs_model *model, size_t n, const
     tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 216 mul, 162 add, 6 div, 6 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 213 mul, 162 add, 6 div, 6 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int tripod_3prs_actuator_accelerations(const tripod_3prs_model *model, const tripod_3prs_real *X,
     const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real *accelerations);

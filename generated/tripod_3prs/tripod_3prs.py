@@ -623,9 +623,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6,
-                J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, platform_mass,),
             (
                 (_prs,
         (prs_J_2_in_spec2_zz, prs_P_c_1_in_axes0_x, prs_base_frame_xx, prs_base_frame_xy,
@@ -657,9 +657,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_prs,
         (prs_J_2_in_spec2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
@@ -1465,11 +1465,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1734,8 +1734,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1743,7 +1743,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1751,11 +1751,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1803,15 +1803,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 735 mul, 540 add, 6 div, 6 sqrt, 0 trig
+# dynamics: 708 mul, 522 add, 6 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, platform_mass,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1895,39 +1894,12 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_xx, M_ta_prs_xy, M_ta_prs_xz,
         M_ta_prs_yx, M_ta_yy, M_ta_prs_yz, M_ta_prs_zx, M_ta_prs_zy, M_ta_zz, M_aa_prs_xx,
@@ -1972,11 +1944,13 @@ def _run_dynamics(m, X, V):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
         prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
@@ -2006,13 +1980,13 @@ def _run_dynamics(m, X, V):
         # (prs-w_2) reciprocal vector 2
         prs_w_2_t = prs_s_2*prs_w_1_t
         prs_w_2_in_axes2_y = -prs_c_2*prs_w_1_t
-        # (prs-qd_2) rate of joint 2
-        prs_qd_2_t = (
+        # (prs-qd_1) rate of joint 1
+        prs_qd_1_t = (
         prs_w_1_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
         # (prs-W_2) centripetal tensor of link 2
-        prs_W_2_t = prs_qd_2_t*prs_qd_2_t
+        prs_W_2_t = prs_qd_1_t*prs_qd_1_t
         # (prs-u_1) centripetal acceleration of the connection point
         prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
         prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
@@ -2023,10 +1997,12 @@ def _run_dynamics(m, X, V):
         prs_u_1_in_axes2_z = (
         prs_base_frame_xz*prs_u_1_x + prs_base_frame_yz*prs_u_1_y + prs_base_frame_zz*prs_u_1_z
         )
+        # (prs-bias) acceleration of the connection point at zero joint accelerations
+        prs_bias_t = prs_platform_joint_offset_x*prs_qd_1_t*prs_qd_1_t
         # (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prs_rel_o_in_axes2_x = (
-        axis_x_prs_axes2_x*prs_u_1_x + axis_x_prs_axes2_y*prs_u_1_y + axis_x_prs_axes2_z*prs_u_1_z
-            + prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
+        prs_bias_t + axis_x_prs_axes2_x*prs_u_1_x + axis_x_prs_axes2_y*prs_u_1_y +
+            axis_x_prs_axes2_z*prs_u_1_z
         )
         # (prs-qdd_1_o) remainder of: acceleration of joint 1
         prs_qdd_1_o_t = prs_w_1_t*(prs_c_2*prs_u_1_in_axes2_y + prs_rel_o_in_axes2_x*prs_s_2)
@@ -2036,21 +2012,21 @@ def _run_dynamics(m, X, V):
         )
         # (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         prs_acc_1_o_in_axes0_x = prs_qdd_1_o - prs_g_in_axes0_x
+        # (prs-acc_2) acceleration of the reference point of link 2, less gravity
+        prs_g_in_axes2_x = prs_c_2*prs_g_in_axes0_x + prs_g_in_axes0_y*prs_s_2
+        prs_g_in_axes2_y = prs_c_2*prs_g_in_axes0_y - prs_g_in_axes0_x*prs_s_2
         # (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        prs_acc_2_o_in_axes2_x = (
-        prs_c_2*prs_qdd_1_o - prs_c_2*prs_g_in_axes0_x - prs_g_in_axes0_y*prs_s_2
-        )
-        prs_acc_2_o_in_axes2_y = (
-        prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y - prs_qdd_1_o*prs_s_2
-        )
+        prs_acc_2_o_in_axes2_x = prs_c_2*prs_qdd_1_o - prs_g_in_axes2_x
+        prs_acc_2_o_in_axes2_y = -prs_g_in_axes2_y - prs_qdd_1_o*prs_s_2
+        # (prs-f_2) inertia force of link 2 less its weight
+        prs_f_2_t = prs_W_2_t*prs_h_2_in_spec2_x
+        prs_f_2_t_2 = prs_W_2_t*prs_h_2_in_spec2_y
         # (prs-f_2_o) remainder of: inertia force of link 2 less its weight
         prs_f_2_o_in_axes2_x = (
-        prs_acc_2_o_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_o_t -
-            prs_W_2_t*prs_h_2_in_spec2_x
+        prs_acc_2_o_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_o_t - prs_f_2_t
         )
         prs_f_2_o_in_axes2_y = (
-        prs_acc_2_o_in_axes2_y*prs_link2_mass - prs_W_2_t*prs_h_2_in_spec2_y -
-            prs_h_2_in_spec2_x*prs_qdd_1_o_t
+        prs_acc_2_o_in_axes2_y*prs_link2_mass - prs_f_2_t_2 - prs_h_2_in_spec2_x*prs_qdd_1_o_t
         )
         # (prs-P_c_2) force that accelerates joint 2, per unit
         prs_P_c_2_in_axes0_x = -prs_c_2*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_s_2
@@ -2391,17 +2367,25 @@ def _run_M(m, X):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
         prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-v_2) velocity of the connection point per rate of joint 2
         prs_v_2_in_axes0_x = -prs_platform_joint_offset_x*prs_s_2
         prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
         # (prs-w_1) reciprocal vector 1
+        axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2
+        axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2
+        axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2
+        axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2
+        axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2
+        axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2
         prs_w_1_t = -1.0/prs_v_2_in_axes0_y
         prs_w_1_t_2 = prs_v_2_in_axes0_x*prs_w_1_t
         prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t_2
@@ -2437,12 +2421,6 @@ def _run_M(m, X):
         prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_y + prs_d_Gamma_2_in_axes2_y*prs_w_2_in_axes2_y
         )
         # (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2
-        axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2
-        axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2
-        axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2
-        axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2
-        axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2
         prs_d_c_t = (
         -axis_x_prs_axes2_x*prs_d_G_in_axes2_xx - axis_y_prs_axes2_x*prs_d_G_in_axes2_yx
         )
@@ -2574,14 +2552,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 402 mul, 285 add, 6 div, 6 sqrt, 0 trig
+# Z: 411 mul, 291 add, 6 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2637,6 +2615,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_6*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_6*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_6*R_zy
+    J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
+    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
+    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2645,39 +2639,12 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_prs_x, Z_t_prs_y, Z_t_prs_z, Z_a_prs_x, Z_a_prs_y, Z_a_prs_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -2717,11 +2684,13 @@ def _run_Z(m, X, V):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
         prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
@@ -2734,55 +2703,58 @@ def _run_Z(m, X, V):
         # (prs-v_2) velocity of the connection point per rate of joint 2
         prs_v_2_in_axes0_x = -prs_platform_joint_offset_x*prs_s_2
         prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
-        # (prs-qd_2) rate of joint 2
-        prs_qd_2_t = -1.0/prs_v_2_in_axes0_y
-        prs_qd_2_t_2 = (
-        prs_qd_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
-            prs_S_dot_z*prs_base_frame_zy)
-        )
-        # (prs-W_2) centripetal tensor of link 2
-        prs_W_2_t = prs_qd_2_t_2*prs_qd_2_t_2
-        # (prs-u_1) centripetal acceleration of the connection point
+        # (prs-w_1) reciprocal vector 1
         axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2
         axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2
         axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2
+        axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2
+        axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2
+        axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2
+        prs_w_1_t = -1.0/prs_v_2_in_axes0_y
+        # (prs-qd_1) rate of joint 1
+        prs_qd_1_t = (
+        prs_w_1_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+            prs_S_dot_z*prs_base_frame_zy)
+        )
+        # (prs-W_2) centripetal tensor of link 2
+        prs_W_2_t = prs_qd_1_t*prs_qd_1_t
+        # (prs-u_1) centripetal acceleration of the connection point
         prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
         prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
         prs_u_1_z = omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
         prs_u_1_in_axes2_y = (
         axis_y_prs_axes2_x*prs_u_1_x + axis_y_prs_axes2_y*prs_u_1_y + axis_y_prs_axes2_z*prs_u_1_z
         )
+        # (prs-bias) acceleration of the connection point at zero joint accelerations
+        prs_bias_t = prs_platform_joint_offset_x*prs_qd_1_t*prs_qd_1_t
         # (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2
-        axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2
-        axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2
         prs_rel_o_in_axes2_x = (
-        axis_x_prs_axes2_x*prs_u_1_x + axis_x_prs_axes2_y*prs_u_1_y + axis_x_prs_axes2_z*prs_u_1_z
-            + prs_platform_joint_offset_x*prs_qd_2_t_2*prs_qd_2_t_2
+        prs_bias_t + axis_x_prs_axes2_x*prs_u_1_x + axis_x_prs_axes2_y*prs_u_1_y +
+            axis_x_prs_axes2_z*prs_u_1_z
         )
         # (prs-qdd_1_o) remainder of: acceleration of joint 1
-        prs_qdd_1_o_t = prs_qd_2_t*(prs_c_2*prs_u_1_in_axes2_y + prs_rel_o_in_axes2_x*prs_s_2)
+        prs_qdd_1_o_t = prs_w_1_t*(prs_c_2*prs_u_1_in_axes2_y + prs_rel_o_in_axes2_x*prs_s_2)
         prs_qdd_1_o = (
         prs_c_2*prs_rel_o_in_axes2_x + prs_qdd_1_o_t*prs_v_2_in_axes0_x -
             prs_s_2*prs_u_1_in_axes2_y
         )
         # (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         prs_acc_1_o_in_axes0_x = prs_qdd_1_o - prs_g_in_axes0_x
+        # (prs-acc_2) acceleration of the reference point of link 2, less gravity
+        prs_g_in_axes2_x = prs_c_2*prs_g_in_axes0_x + prs_g_in_axes0_y*prs_s_2
+        prs_g_in_axes2_y = prs_c_2*prs_g_in_axes0_y - prs_g_in_axes0_x*prs_s_2
         # (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        prs_acc_2_o_in_axes2_x = (
-        prs_c_2*prs_qdd_1_o - prs_c_2*prs_g_in_axes0_x - prs_g_in_axes0_y*prs_s_2
-        )
-        prs_acc_2_o_in_axes2_y = (
-        prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y - prs_qdd_1_o*prs_s_2
-        )
+        prs_acc_2_o_in_axes2_x = prs_c_2*prs_qdd_1_o - prs_g_in_axes2_x
+        prs_acc_2_o_in_axes2_y = -prs_g_in_axes2_y - prs_qdd_1_o*prs_s_2
+        # (prs-f_2) inertia force of link 2 less its weight
+        prs_f_2_t = prs_W_2_t*prs_h_2_in_spec2_x
+        prs_f_2_t_2 = prs_W_2_t*prs_h_2_in_spec2_y
         # (prs-f_2_o) remainder of: inertia force of link 2 less its weight
         prs_f_2_o_in_axes2_x = (
-        prs_acc_2_o_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_o_t -
-            prs_W_2_t*prs_h_2_in_spec2_x
+        prs_acc_2_o_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_o_t - prs_f_2_t
         )
         prs_f_2_o_in_axes2_y = (
-        prs_acc_2_o_in_axes2_y*prs_link2_mass - prs_W_2_t*prs_h_2_in_spec2_y -
-            prs_h_2_in_spec2_x*prs_qdd_1_o_t
+        prs_acc_2_o_in_axes2_y*prs_link2_mass - prs_f_2_t_2 - prs_h_2_in_spec2_x*prs_qdd_1_o_t
         )
         # (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prs_mu_2_o_in_axes2_z = (
@@ -2795,7 +2767,7 @@ def _run_Z(m, X, V):
             prs_f_2_o_in_axes2_y*prs_s_2
         )
         # (prs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        prs_G_o_t = prs_qd_2_t*(prs_mu_2_o_in_axes2_z - prs_T_1_o_in_axes0_x*prs_v_2_in_axes0_x)
+        prs_G_o_t = prs_w_1_t*(prs_mu_2_o_in_axes2_z - prs_T_1_o_in_axes0_x*prs_v_2_in_axes0_x)
         prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*prs_c_2 - prs_G_o_t*prs_s_2
         prs_G_o_in_axes2_y = -prs_G_o_t*prs_c_2 - prs_T_1_o_in_axes0_x*prs_s_2
         # (prs-U) velocity and gravity terms of the leg force
@@ -2837,7 +2809,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 174 mul, 114 add, 6 div, 6 sqrt, 0 trig
+# H: 177 mul, 114 add, 6 div, 6 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -2914,31 +2886,32 @@ def _run_H(m, X):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
         prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_in_axes0_x = -prs_platform_joint_offset_x*prs_s_2
         prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
         # (prs-w_1) reciprocal vector 1
-        prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_in_axes0_y
-        prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t
-        prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t - prs_s_2
-        prs_w_1_x = (
-        prs_w_1_in_axes2_x*(prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2) +
-            prs_w_1_in_axes2_y*(prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2)
-        )
-        prs_w_1_y = (
-        prs_w_1_in_axes2_x*(prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2) +
-            prs_w_1_in_axes2_y*(prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2)
-        )
-        prs_w_1_z = (
-        prs_w_1_in_axes2_x*(prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2) +
-            prs_w_1_in_axes2_y*(prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2)
-        )
+        axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2
+        axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2
+        axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2
+        axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2
+        axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2
+        axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2
+        prs_w_1_t = -1.0/prs_v_2_in_axes0_y
+        prs_w_1_t_2 = prs_v_2_in_axes0_x*prs_w_1_t
+        prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t_2
+        prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t_2 - prs_s_2
+        prs_w_1_x = axis_x_prs_axes2_x*prs_w_1_in_axes2_x + axis_y_prs_axes2_x*prs_w_1_in_axes2_y
+        prs_w_1_y = axis_x_prs_axes2_y*prs_w_1_in_axes2_x + axis_y_prs_axes2_y*prs_w_1_in_axes2_y
+        prs_w_1_z = axis_x_prs_axes2_z*prs_w_1_in_axes2_x + axis_y_prs_axes2_z*prs_w_1_in_axes2_y
         # (prs-H_a_1) moment of the column's unit force about the platform origin
         prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y
         prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z
@@ -2997,7 +2970,7 @@ def _run_Hk(m, X):
         prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, prs_platform_point_x,
             prs_platform_point_y, prs_platform_point_z,
         ) = k
-        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
+        # (prs-S) from the base point to the connection point
         prs_q_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
@@ -3007,6 +2980,7 @@ def _run_Hk(m, X):
         prs_q_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
+        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
         prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z
         prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x
         prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y
@@ -3067,7 +3041,7 @@ def _run_constraint_bias(m, X, V):
         prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, prs_platform_point_x,
             prs_platform_point_y, prs_platform_point_z,
         ) = k
-        # (prs-u_1) centripetal acceleration of the connection point
+        # (prs-S) from the base point to the connection point
         prs_q_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
@@ -3077,20 +3051,23 @@ def _run_constraint_bias(m, X, V):
         prs_q_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        prs_u_1_t = omega_y*prs_q_z - omega_z*prs_q_y
-        prs_u_1_t_2 = omega_z*prs_q_x - omega_x*prs_q_z
-        prs_u_1_t_3 = omega_x*prs_q_y - omega_y*prs_q_x
+        # (prs-S_dot) velocity of the connection point
+        prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y
+        prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z
+        prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x
+        # (prs-u_1) centripetal acceleration of the connection point
+        prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
+        prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
+        prs_u_1_z = omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
         prs_u_1_in_axes2_z = (
-        prs_base_frame_xz*(omega_y*prs_u_1_t_3 - omega_z*prs_u_1_t_2) +
-            prs_base_frame_yz*(omega_z*prs_u_1_t - omega_x*prs_u_1_t_3) +
-            prs_base_frame_zz*(omega_x*prs_u_1_t_2 - omega_y*prs_u_1_t)
+        prs_base_frame_xz*prs_u_1_x + prs_base_frame_yz*prs_u_1_y + prs_base_frame_zz*prs_u_1_z
         )
         # (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_prs[0][leg]] = prs_u_1_in_axes2_z
     return ok, (out_constraint_bias,)
 
 
-# required: 507 mul, 372 add, 6 div, 6 sqrt, 0 trig
+# required: 498 mul, 363 add, 6 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3165,9 +3142,22 @@ def _run_required(m, X, V, A):
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -3180,21 +3170,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*platform_mass + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) -
-        h_star_x*(f_p_t_2 + f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*platform_mass + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) -
-        h_star_y*(f_p_t + f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*platform_mass + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) -
-        h_star_z*(f_p_t + f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*platform_mass - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*platform_mass - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*platform_mass - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -3274,11 +3252,13 @@ def _run_required(m, X, V, A):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
         prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
@@ -3298,24 +3278,20 @@ def _run_required(m, X, V, A):
         prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t_2 - prs_s_2
         prs_w_1_t_3 = prs_c_2*prs_w_1_in_axes2_x - prs_s_2*prs_w_1_in_axes2_y
         prs_w_1_t_4 = prs_c_2*prs_w_1_in_axes2_y + prs_s_2*prs_w_1_in_axes2_x
-        prs_w_1_x = prs_base_frame_xx*prs_w_1_t_3 + prs_base_frame_xy*prs_w_1_t_4
-        prs_w_1_y = prs_base_frame_yx*prs_w_1_t_3 + prs_base_frame_yy*prs_w_1_t_4
-        prs_w_1_z = prs_base_frame_zx*prs_w_1_t_3 + prs_base_frame_zy*prs_w_1_t_4
-        # (prs-qd_2) rate of joint 2
-        prs_qd_2_t = (
+        prs_w_1_x_2 = prs_base_frame_xx*prs_w_1_t_3 + prs_base_frame_xy*prs_w_1_t_4
+        prs_w_1_y_2 = prs_base_frame_yx*prs_w_1_t_3 + prs_base_frame_yy*prs_w_1_t_4
+        prs_w_1_z_2 = prs_base_frame_zx*prs_w_1_t_3 + prs_base_frame_zy*prs_w_1_t_4
+        # (prs-qd_1) rate of joint 1
+        prs_qd_1_t = (
         prs_w_1_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
         # (prs-W_2) centripetal tensor of link 2
-        prs_W_2_t = prs_qd_2_t*prs_qd_2_t
-        # (prs-a_p) acceleration of the connection point without its centripetal part
-        prs_a_p_x = t_ddot_x + alpha_y*prs_q_z - alpha_z*prs_q_y
-        prs_a_p_y = t_ddot_y + alpha_z*prs_q_x - alpha_x*prs_q_z
-        prs_a_p_z = t_ddot_z + alpha_x*prs_q_y - alpha_y*prs_q_x
+        prs_W_2_t = prs_qd_1_t*prs_qd_1_t
         # (prs-S_ddot) acceleration of the connection point
-        prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
-        prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
-        prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
+        prs_S_ddot_x = t_ddot_x + B_p_xy*prs_q_y + B_p_xz*prs_q_z - W_p_t_4*prs_q_x
+        prs_S_ddot_y = t_ddot_y + B_p_yx*prs_q_x + B_p_yz*prs_q_z - W_p_t_5*prs_q_y
+        prs_S_ddot_z = t_ddot_z + B_p_zx*prs_q_x + B_p_zy*prs_q_y - W_p_t_6*prs_q_z
         prs_S_ddot_t = (
         prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx +
             prs_S_ddot_z*prs_base_frame_zx
@@ -3325,11 +3301,10 @@ def _run_required(m, X, V, A):
             prs_S_ddot_z*prs_base_frame_zy
         )
         prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*prs_c_2 - prs_S_ddot_t*prs_s_2
+        # (prs-bias) acceleration of the connection point at zero joint accelerations
+        prs_bias_t = prs_platform_joint_offset_x*prs_qd_1_t*prs_qd_1_t
         # (prs-rel) acceleration of the connection point left to the joint accelerations
-        prs_rel_in_axes2_x = (
-        prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2 +
-            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
-        )
+        prs_rel_in_axes2_x = prs_bias_t + prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2
         # (prs-qdd_1) acceleration of joint 1
         prs_qdd_1_t = prs_w_1_t*(prs_S_ddot_in_axes2_y*prs_c_2 + prs_rel_in_axes2_x*prs_s_2)
         prs_qdd_1 = (
@@ -3339,20 +3314,18 @@ def _run_required(m, X, V, A):
         # (prs-acc_1) acceleration of the reference point of link 1, less gravity
         prs_acc_1_in_axes0_x = prs_qdd_1 - prs_g_in_axes0_x
         # (prs-acc_2) acceleration of the reference point of link 2, less gravity
-        prs_acc_2_in_axes2_x = (
-        prs_c_2*prs_qdd_1 - prs_c_2*prs_g_in_axes0_x - prs_g_in_axes0_y*prs_s_2
-        )
-        prs_acc_2_in_axes2_y = (
-        prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y - prs_qdd_1*prs_s_2
-        )
+        prs_g_in_axes2_x = prs_c_2*prs_g_in_axes0_x + prs_g_in_axes0_y*prs_s_2
+        prs_g_in_axes2_y = prs_c_2*prs_g_in_axes0_y - prs_g_in_axes0_x*prs_s_2
+        prs_acc_2_in_axes2_x = prs_c_2*prs_qdd_1 - prs_g_in_axes2_x
+        prs_acc_2_in_axes2_y = -prs_g_in_axes2_y - prs_qdd_1*prs_s_2
         # (prs-f_2) inertia force of link 2 less its weight
+        prs_f_2_t = prs_W_2_t*prs_h_2_in_spec2_x
+        prs_f_2_t_2 = prs_W_2_t*prs_h_2_in_spec2_y
         prs_f_2_in_axes2_x = (
-        prs_acc_2_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_t -
-            prs_W_2_t*prs_h_2_in_spec2_x
+        prs_acc_2_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_t - prs_f_2_t
         )
         prs_f_2_in_axes2_y = (
-        prs_acc_2_in_axes2_y*prs_link2_mass - prs_W_2_t*prs_h_2_in_spec2_y -
-            prs_h_2_in_spec2_x*prs_qdd_1_t
+        prs_acc_2_in_axes2_y*prs_link2_mass - prs_f_2_t_2 - prs_h_2_in_spec2_x*prs_qdd_1_t
         )
         # (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         prs_mu_2_in_axes2_z = (
@@ -3379,9 +3352,9 @@ def _run_required(m, X, V, A):
         prs_R_a_t_2 = prs_c_z*prs_q_x - prs_c_x*prs_q_z
         prs_R_a_t_3 = prs_c_x*prs_q_y - prs_c_y*prs_q_x
         # (prs-H_a_1) moment of the column's unit force about the platform origin
-        prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y
-        prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z
-        prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x
+        prs_H_a_1_x_2 = prs_q_y*prs_w_1_z_2 - prs_q_z*prs_w_1_y_2
+        prs_H_a_1_y_2 = prs_q_z*prs_w_1_x_2 - prs_q_x*prs_w_1_z_2
+        prs_H_a_1_z_2 = prs_q_x*prs_w_1_y_2 - prs_q_y*prs_w_1_x_2
         # (prs-Hk_a_1) moment of the column's unit force about the platform origin
         prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z
         prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x
@@ -3399,13 +3372,13 @@ def _run_required(m, X, V, A):
         R_a_prs_y += prs_R_a_t_2
         R_a_prs_z += prs_R_a_t_3
         # (prs-w_1) reciprocal vector 1
-        out_H[_H_prs[0][leg]] = prs_w_1_x
-        out_H[_H_prs[1][leg]] = prs_w_1_y
-        out_H[_H_prs[2][leg]] = prs_w_1_z
+        out_H[_H_prs[0][leg]] = prs_w_1_x_2
+        out_H[_H_prs[1][leg]] = prs_w_1_y_2
+        out_H[_H_prs[2][leg]] = prs_w_1_z_2
         # (prs-H_a_1) moment of the column's unit force about the platform origin
-        out_H[_H_prs[3][leg]] = prs_H_a_1_x
-        out_H[_H_prs[4][leg]] = prs_H_a_1_y
-        out_H[_H_prs[5][leg]] = prs_H_a_1_z
+        out_H[_H_prs[3][leg]] = prs_H_a_1_x_2
+        out_H[_H_prs[4][leg]] = prs_H_a_1_y_2
+        out_H[_H_prs[5][leg]] = prs_H_a_1_z_2
         # (legs_size) rms size of the legs, taken where the platform points coincide
         out_Hk[_Hk_prs[0][leg]] = prs_base_frame_xz
         out_Hk[_Hk_prs[1][leg]] = prs_base_frame_yz
@@ -3484,18 +3457,18 @@ def _run_inverse_kinematics(m, X):
             prs_platform_point_z, prs_root_2_t, prs_size_t,
         ) = k
         # (prs-S) from the base point to the connection point
-        prs_S_x = (
-        t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z -
-            prs_base_point_x
+        prs_q_x = (
+        R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_S_y = (
-        t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z -
-            prs_base_point_y
+        prs_q_y = (
+        R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_S_z = (
-        t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z -
-            prs_base_point_z
+        prs_q_z = (
+        R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
+        prs_S_x = prs_q_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_z + t_z - prs_base_point_z
         prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
@@ -3516,12 +3489,13 @@ def _run_inverse_kinematics(m, X):
         prs_q_1 = prs_S_in_axes0_x - prs_q_1_t
         # (prs-rho2_2) squared amplitude
         prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
+        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
+        prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t
+        # (prs-s_2) sine of the angle of joint 2 from its reference direction
+        prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-q_2) displacement of joint 2
-        prs_q_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_q_2 = (
-        atan2(prs_S_in_axes0_y*prs_platform_joint_offset_x*prs_q_2_t,
-            prs_platform_joint_offset_x*prs_q_1_t*prs_q_2_t)
-        )
+        prs_q_2 = atan2(prs_s_2, prs_c_2)
         ok = ok & (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t)
         # (prs-q_1) displacement of joint 1
         out_q[_q_prs[0][leg]] = prs_q_1
@@ -3530,7 +3504,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 135 mul, 105 add, 6 div, 6 sqrt, 0 trig
+# joint_rates: 138 mul, 105 add, 6 div, 6 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -3620,26 +3594,35 @@ def _run_joint_rates(m, X, V):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
         prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
+        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
+        prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t
+        # (prs-s_2) sine of the angle of joint 2 from its reference direction
+        prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
-        prs_S_dot_x = t_dot_x + omega_y*prs_q_z - omega_z*prs_q_y
-        prs_S_dot_y = t_dot_y + omega_z*prs_q_x - omega_x*prs_q_z
-        prs_S_dot_z = t_dot_z + omega_x*prs_q_y - omega_y*prs_q_x
+        prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y
+        prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z
+        prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x
+        prs_S_dot_x = prs_S_dot_t + t_dot_x
+        prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
+        prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
         # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_v_2_in_axes0_y = (
-        -prs_branch_1*sqrt(prs_disc_1)*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_v_2_t
-        )
+        prs_v_2_in_axes0_x = -prs_platform_joint_offset_x*prs_s_2
+        prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        prs_w_1_t = -1.0/prs_v_2_in_axes0_y
         # (prs-qd_1) rate of joint 1
         prs_qd_1_t = (
-        -(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
-            prs_S_dot_z*prs_base_frame_zy)/prs_v_2_in_axes0_y
+        prs_w_1_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+            prs_S_dot_z*prs_base_frame_zy)
         )
         prs_qd_1 = (
         prs_S_dot_x*prs_base_frame_xx + prs_S_dot_y*prs_base_frame_yx +
-            prs_S_dot_z*prs_base_frame_zx -
-            prs_S_in_axes0_y*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_qd_1_t*prs_v_2_t
+            prs_S_dot_z*prs_base_frame_zx + prs_qd_1_t*prs_v_2_in_axes0_x
         )
         ok = (
         ok & (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
@@ -3652,7 +3635,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 216 mul, 162 add, 6 div, 6 sqrt, 0 trig
+# joint_accelerations: 213 mul, 162 add, 6 div, 6 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -3719,6 +3702,23 @@ def _run_joint_accelerations(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
@@ -3755,11 +3755,13 @@ def _run_joint_accelerations(m, X, V, A):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
         prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
@@ -3770,21 +3772,19 @@ def _run_joint_accelerations(m, X, V, A):
         prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
         prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
         # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_in_axes0_x = -prs_platform_joint_offset_x*prs_s_2
         prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
-        # (prs-qd_2) rate of joint 2
-        prs_qd_2_t = -1.0/prs_v_2_in_axes0_y
-        prs_qd_2_t_2 = (
-        prs_qd_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+        # (prs-w_1) reciprocal vector 1
+        prs_w_1_t = -1.0/prs_v_2_in_axes0_y
+        # (prs-qd_1) rate of joint 1
+        prs_qd_1_t = (
+        prs_w_1_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
-        # (prs-a_p) acceleration of the connection point without its centripetal part
-        prs_a_p_x = t_ddot_x + alpha_y*prs_q_z - alpha_z*prs_q_y
-        prs_a_p_y = t_ddot_y + alpha_z*prs_q_x - alpha_x*prs_q_z
-        prs_a_p_z = t_ddot_z + alpha_x*prs_q_y - alpha_y*prs_q_x
         # (prs-S_ddot) acceleration of the connection point
-        prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
-        prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
-        prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
+        prs_S_ddot_x = t_ddot_x + B_p_xy*prs_q_y + B_p_xz*prs_q_z - W_p_t_4*prs_q_x
+        prs_S_ddot_y = t_ddot_y + B_p_yx*prs_q_x + B_p_yz*prs_q_z - W_p_t_5*prs_q_y
+        prs_S_ddot_z = t_ddot_z + B_p_zx*prs_q_x + B_p_zy*prs_q_y - W_p_t_6*prs_q_z
         prs_S_ddot_t = (
         prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx +
             prs_S_ddot_z*prs_base_frame_zx
@@ -3794,16 +3794,15 @@ def _run_joint_accelerations(m, X, V, A):
             prs_S_ddot_z*prs_base_frame_zy
         )
         prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*prs_c_2 - prs_S_ddot_t*prs_s_2
+        # (prs-bias) acceleration of the connection point at zero joint accelerations
+        prs_bias_t = prs_platform_joint_offset_x*prs_qd_1_t*prs_qd_1_t
         # (prs-rel) acceleration of the connection point left to the joint accelerations
-        prs_rel_in_axes2_x = (
-        prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2 +
-            prs_platform_joint_offset_x*prs_qd_2_t_2*prs_qd_2_t_2
-        )
+        prs_rel_in_axes2_x = prs_bias_t + prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2
         # (prs-qdd_1) acceleration of joint 1
-        prs_qdd_1_t = prs_qd_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 + prs_rel_in_axes2_x*prs_s_2)
+        prs_qdd_1_t = prs_w_1_t*(prs_S_ddot_in_axes2_y*prs_c_2 + prs_rel_in_axes2_x*prs_s_2)
         prs_qdd_1 = (
-        prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*prs_s_2 -
-            prs_platform_joint_offset_x*prs_qdd_1_t*prs_s_2
+        prs_c_2*prs_rel_in_axes2_x + prs_qdd_1_t*prs_v_2_in_axes0_x -
+            prs_S_ddot_in_axes2_y*prs_s_2
         )
         ok = (
         ok & (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
@@ -3863,18 +3862,18 @@ def _run_constraints(m, X):
             prs_platform_point_z,
         ) = k
         # (prs-S) from the base point to the connection point
-        prs_S_x = (
-        t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z -
-            prs_base_point_x
+        prs_q_x = (
+        R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_S_y = (
-        t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z -
-            prs_base_point_y
+        prs_q_y = (
+        R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_S_z = (
-        t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z -
-            prs_base_point_z
+        prs_q_z = (
+        R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
+        prs_S_x = prs_q_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_z + t_z - prs_base_point_z
         prs_S_in_axes0_z = (
         prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
@@ -3883,7 +3882,7 @@ def _run_constraints(m, X):
     return ok, (out_constraints,)
 
 
-# legs: 360 mul, 246 add, 6 div, 6 sqrt, 0 trig
+# legs: 357 mul, 246 add, 6 div, 6 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -3952,6 +3951,23 @@ def _run_legs(m, X, V, A):
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
     out_constraint_direction = m.zeros("constraint_direction")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         prs_J_2_in_spec2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
@@ -3990,11 +4006,13 @@ def _run_legs(m, X, V, A):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
         prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
@@ -4014,24 +4032,20 @@ def _run_legs(m, X, V, A):
         prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t_2 - prs_s_2
         prs_w_1_t_3 = prs_c_2*prs_w_1_in_axes2_x - prs_s_2*prs_w_1_in_axes2_y
         prs_w_1_t_4 = prs_c_2*prs_w_1_in_axes2_y + prs_s_2*prs_w_1_in_axes2_x
-        prs_w_1_x = prs_base_frame_xx*prs_w_1_t_3 + prs_base_frame_xy*prs_w_1_t_4
-        prs_w_1_y = prs_base_frame_yx*prs_w_1_t_3 + prs_base_frame_yy*prs_w_1_t_4
-        prs_w_1_z = prs_base_frame_zx*prs_w_1_t_3 + prs_base_frame_zy*prs_w_1_t_4
-        # (prs-qd_2) rate of joint 2
-        prs_qd_2_t = (
+        prs_w_1_x_2 = prs_base_frame_xx*prs_w_1_t_3 + prs_base_frame_xy*prs_w_1_t_4
+        prs_w_1_y_2 = prs_base_frame_yx*prs_w_1_t_3 + prs_base_frame_yy*prs_w_1_t_4
+        prs_w_1_z_2 = prs_base_frame_zx*prs_w_1_t_3 + prs_base_frame_zy*prs_w_1_t_4
+        # (prs-qd_1) rate of joint 1
+        prs_qd_1_t = (
         prs_w_1_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
         # (prs-W_2) centripetal tensor of link 2
-        prs_W_2_t = prs_qd_2_t*prs_qd_2_t
-        # (prs-a_p) acceleration of the connection point without its centripetal part
-        prs_a_p_x = t_ddot_x + alpha_y*prs_q_z - alpha_z*prs_q_y
-        prs_a_p_y = t_ddot_y + alpha_z*prs_q_x - alpha_x*prs_q_z
-        prs_a_p_z = t_ddot_z + alpha_x*prs_q_y - alpha_y*prs_q_x
+        prs_W_2_t = prs_qd_1_t*prs_qd_1_t
         # (prs-S_ddot) acceleration of the connection point
-        prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
-        prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
-        prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
+        prs_S_ddot_x = t_ddot_x + B_p_xy*prs_q_y + B_p_xz*prs_q_z - W_p_t_4*prs_q_x
+        prs_S_ddot_y = t_ddot_y + B_p_yx*prs_q_x + B_p_yz*prs_q_z - W_p_t_5*prs_q_y
+        prs_S_ddot_z = t_ddot_z + B_p_zx*prs_q_x + B_p_zy*prs_q_y - W_p_t_6*prs_q_z
         prs_S_ddot_t = (
         prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx +
             prs_S_ddot_z*prs_base_frame_zx
@@ -4041,11 +4055,10 @@ def _run_legs(m, X, V, A):
             prs_S_ddot_z*prs_base_frame_zy
         )
         prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*prs_c_2 - prs_S_ddot_t*prs_s_2
+        # (prs-bias) acceleration of the connection point at zero joint accelerations
+        prs_bias_t = prs_platform_joint_offset_x*prs_qd_1_t*prs_qd_1_t
         # (prs-rel) acceleration of the connection point left to the joint accelerations
-        prs_rel_in_axes2_x = (
-        prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2 +
-            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
-        )
+        prs_rel_in_axes2_x = prs_bias_t + prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2
         # (prs-qdd_1) acceleration of joint 1
         prs_qdd_1_t = prs_w_1_t*(prs_S_ddot_in_axes2_y*prs_c_2 + prs_rel_in_axes2_x*prs_s_2)
         prs_qdd_1 = (
@@ -4055,20 +4068,18 @@ def _run_legs(m, X, V, A):
         # (prs-acc_1) acceleration of the reference point of link 1, less gravity
         prs_acc_1_in_axes0_x = prs_qdd_1 - prs_g_in_axes0_x
         # (prs-acc_2) acceleration of the reference point of link 2, less gravity
-        prs_acc_2_in_axes2_x = (
-        prs_c_2*prs_qdd_1 - prs_c_2*prs_g_in_axes0_x - prs_g_in_axes0_y*prs_s_2
-        )
-        prs_acc_2_in_axes2_y = (
-        prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y - prs_qdd_1*prs_s_2
-        )
+        prs_g_in_axes2_x = prs_c_2*prs_g_in_axes0_x + prs_g_in_axes0_y*prs_s_2
+        prs_g_in_axes2_y = prs_c_2*prs_g_in_axes0_y - prs_g_in_axes0_x*prs_s_2
+        prs_acc_2_in_axes2_x = prs_c_2*prs_qdd_1 - prs_g_in_axes2_x
+        prs_acc_2_in_axes2_y = -prs_g_in_axes2_y - prs_qdd_1*prs_s_2
         # (prs-f_2) inertia force of link 2 less its weight
+        prs_f_2_t = prs_W_2_t*prs_h_2_in_spec2_x
+        prs_f_2_t_2 = prs_W_2_t*prs_h_2_in_spec2_y
         prs_f_2_in_axes2_x = (
-        prs_acc_2_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_t -
-            prs_W_2_t*prs_h_2_in_spec2_x
+        prs_acc_2_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_t - prs_f_2_t
         )
         prs_f_2_in_axes2_y = (
-        prs_acc_2_in_axes2_y*prs_link2_mass - prs_W_2_t*prs_h_2_in_spec2_y -
-            prs_h_2_in_spec2_x*prs_qdd_1_t
+        prs_acc_2_in_axes2_y*prs_link2_mass - prs_f_2_t_2 - prs_h_2_in_spec2_x*prs_qdd_1_t
         )
         # (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         prs_mu_2_in_axes2_z = (
@@ -4099,9 +4110,9 @@ def _run_legs(m, X, V, A):
         out_leg_force[_leg_force_prs[1][leg]] = prs_c_y
         out_leg_force[_leg_force_prs[2][leg]] = prs_c_z
         # (prs-w_1) reciprocal vector 1
-        out_actuator[_actuator_prs[0][leg]] = prs_w_1_x
-        out_actuator[_actuator_prs[1][leg]] = prs_w_1_y
-        out_actuator[_actuator_prs[2][leg]] = prs_w_1_z
+        out_actuator[_actuator_prs[0][leg]] = prs_w_1_x_2
+        out_actuator[_actuator_prs[1][leg]] = prs_w_1_y_2
+        out_actuator[_actuator_prs[2][leg]] = prs_w_1_z_2
         # (legs_size) rms size of the legs, taken where the platform points coincide
         out_constraint_direction[_constraint_direction_prs[0][leg]] = prs_base_frame_xz
         out_constraint_direction[_constraint_direction_prs[1][leg]] = prs_base_frame_yz
@@ -4154,12 +4165,14 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        platform_mass*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + platform_mass*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + platform_mass*t_z)
+    gravity_x*(h_star_x + platform_mass*t_x) + gravity_y*(h_star_y + platform_mass*t_y) +
+        gravity_z*(h_star_z + platform_mass*t_z)
     )
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
@@ -4174,18 +4187,18 @@ def _run_potential(m, X):
             prs_potential_t_3, prs_root_2_t, prs_size_t,
         ) = k
         # (prs-S) from the base point to the connection point
-        prs_S_x = (
-        t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z -
-            prs_base_point_x
+        prs_q_x = (
+        R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_S_y = (
-        t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z -
-            prs_base_point_y
+        prs_q_y = (
+        R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_S_z = (
-        t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z -
-            prs_base_point_z
+        prs_q_z = (
+        R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
+        prs_S_x = prs_q_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_z + t_z - prs_base_point_z
         prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
@@ -4211,13 +4224,15 @@ def _run_potential(m, X):
         prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
+        # (prs-P_c_2) force that accelerates joint 2, per unit
+        prs_P_c_2_in_axes0_x = -prs_c_2*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_s_2
         # (potential) potential energy
         prs_potential_t_4 = prs_b_in_axes0_x + prs_q_1
         prs_potential_t_5 = (
         prs_potential_t_3 + prs_g_in_axes0_x*(prs_h_1_in_spec0_x + prs_c_2*prs_h_2_in_spec2_x +
             prs_link1_mass*prs_potential_t_4 + prs_link2_mass*prs_potential_t_4 -
             prs_h_2_in_spec2_y*prs_s_2) + prs_g_in_axes0_y*(prs_h_1_in_spec0_y + prs_potential_t +
-            prs_potential_t_2 + prs_c_2*prs_h_2_in_spec2_y + prs_h_2_in_spec2_x*prs_s_2)
+            prs_potential_t_2 - prs_P_c_2_in_axes0_x)
         )
         ok = ok & (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t)
         # (potential) potential energy
@@ -4229,7 +4244,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 208 mul, 144 add, 6 div, 10 sqrt, 0 trig
+# condition: 211 mul, 144 add, 6 div, 10 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -4317,31 +4332,32 @@ def _run_condition(m, X):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
         prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_in_axes0_x = -prs_platform_joint_offset_x*prs_s_2
         prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
         # (prs-w_1) reciprocal vector 1
-        prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_in_axes0_y
-        prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t
-        prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t - prs_s_2
-        prs_w_1_x = (
-        prs_w_1_in_axes2_x*(prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2) +
-            prs_w_1_in_axes2_y*(prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2)
-        )
-        prs_w_1_y = (
-        prs_w_1_in_axes2_x*(prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2) +
-            prs_w_1_in_axes2_y*(prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2)
-        )
-        prs_w_1_z = (
-        prs_w_1_in_axes2_x*(prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2) +
-            prs_w_1_in_axes2_y*(prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2)
-        )
+        axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2
+        axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2
+        axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2
+        axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2
+        axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2
+        axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2
+        prs_w_1_t = -1.0/prs_v_2_in_axes0_y
+        prs_w_1_t_2 = prs_v_2_in_axes0_x*prs_w_1_t
+        prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t_2
+        prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t_2 - prs_s_2
+        prs_w_1_x = axis_x_prs_axes2_x*prs_w_1_in_axes2_x + axis_y_prs_axes2_x*prs_w_1_in_axes2_y
+        prs_w_1_y = axis_x_prs_axes2_y*prs_w_1_in_axes2_x + axis_y_prs_axes2_y*prs_w_1_in_axes2_y
+        prs_w_1_z = axis_x_prs_axes2_z*prs_w_1_in_axes2_x + axis_y_prs_axes2_z*prs_w_1_in_axes2_y
         # (prs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prs_pivot_size = abs(prs_rho2_2)
         prs_pivot_size_2 = abs(prs_v_2_in_axes0_y)
@@ -4692,14 +4708,14 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_0 = q[[0, 2, 4]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
     constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_1 = -constraints
-    gap = np.concatenate((subtract_1, negative_1))
-    return (gap,)
+    residual = np.concatenate((subtract_1, negative_1))
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -4710,14 +4726,14 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 
-def _steps_constraint_gap(m, X):
+def _steps_constraint_residual(m, X):
     constraints, = m.run(_run_constraints, ("constraints",), X)
-    gap = -constraints
-    return (gap,)
+    residual = -constraints
+    return (residual,)
 
 
 def _steps_constraint_slope(m, X):
@@ -4726,7 +4742,7 @@ def _steps_constraint_slope(m, X):
 
 
 def _steps_project(m, X):
-    projected = _search(m, _steps_constraint_gap, _steps_constraint_slope, X, (), (), False)
+    projected = _search(m, _steps_constraint_residual, _steps_constraint_slope, X, (), (), False)
     return (projected,)
 
 

@@ -133,7 +133,7 @@ int tripod_3rps_M(const tripod_3rps_model *model, const tripod_3rps_real *X, tri
 size_t tripod_3rps_M_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real *X,
     tripod_3rps_real *M, int *status);
 
-/* Velocity and gravity terms Z. 336 mul, 252 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 345 mul, 258 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int tripod_3rps_Z(const tripod_3rps_model *model, const tripod_3rps_real *X, const
     tripod_3rps_real *V, tripod_3rps_real *Z);
@@ -181,7 +181,7 @@ int tripod_3rps_joint_rates(const tripod_3rps_model *model, const tripod_3rps_re
 size_t tripod_3rps_joint_rates_batch(const tripod_3rps_model *model, size_t n, const
     tripod_3rps_real *X, const tripod_3rps_real *V, tripod_3rps_real *rates, int *status);
 
-/* Accelerations of all joints. 204 mul, 153 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 201 mul, 153 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int tripod_3rps_joint_accelerations(const tripod_3rps_model *model, const tripod_3rps_real *X,
     const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real *accelerations);
@@ -189,7 +189,7 @@ size_t tripod_3rps_joint_accelerations_batch(const tripod_3rps_model *model, siz
     tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 585 mul, 468 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 558 mul, 450 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3rps_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const
     tripod_3rps_real *V, tripod_3rps_real *M, tripod_3rps_real *Z, tripod_3rps_real *H);
@@ -197,7 +197,7 @@ size_t tripod_3rps_dynamics_batch(const tripod_3rps_model *model, size_t n, cons
     *X, const tripod_3rps_real *V, tripod_3rps_real *M, tripod_3rps_real *Z, tripod_3rps_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 414 mul, 324 add, 3 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 405 mul, 315 add, 3 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU), lambda (NC). */
 int tripod_3rps_inverse_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const
@@ -207,7 +207,7 @@ size_t tripod_3rps_inverse_dynamics_batch(const tripod_3rps_model *model, size_t
     tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, const
     tripod_3rps_real *wrench, tripod_3rps_real *tau, tripod_3rps_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 585 mul, 468 add, 3 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 558 mul, 450 add, 3 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV), lambda (NC). */
 int tripod_3rps_forward_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const
@@ -228,7 +228,7 @@ size_t tripod_3rps_complete_acceleration_batch(const tripod_3rps_model *model, s
     tripod_3rps_real *wrench, tripod_3rps_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 267 mul, 198 add, 3 div, 3 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 264 mul, 198 add, 3 div, 3 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int tripod_3rps_leg_reactions(const tripod_3rps_model *model, const tripod_3rps_real *X, const
     tripod_3rps_real *V, const tripod_3rps_real *A, const tripod_3rps_real *wrench,
@@ -338,7 +338,7 @@ int tripod_3rps_actuator_rates(const tripod_3rps_model *model, const tripod_3rps
 size_t tripod_3rps_actuator_rates_batch(const tripod_3rps_model *model, size_t n, const
     tripod_3rps_real *X, const tripod_3rps_real *V, tripod_3rps_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 204 mul, 153 add, 3 div, 3 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 201 mul, 153 add, 3 div, 3 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int tripod_3rps_actuator_accelerations(const tripod_3rps_model *model, const tripod_3rps_real *X,
     const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real *accelerations);

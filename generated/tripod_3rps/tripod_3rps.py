@@ -606,9 +606,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6,
-                J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, platform_mass,),
             (
                 (_rps,
         (rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
@@ -637,9 +637,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_rps,
         (rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
@@ -1433,11 +1433,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1702,8 +1702,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1711,7 +1711,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1719,11 +1719,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1771,15 +1771,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 585 mul, 468 add, 3 div, 3 sqrt, 0 trig
+# dynamics: 558 mul, 450 add, 3 div, 3 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, platform_mass,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1863,39 +1862,12 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_xx, M_ta_rps_xy, M_ta_rps_xz,
         M_ta_rps_yx, M_ta_yy, M_ta_rps_yz, M_ta_rps_zx, M_ta_rps_zy, M_ta_zz, M_aa_rps_xx,
@@ -1972,32 +1944,37 @@ def _run_dynamics(m, X, V):
         rps_u_1_in_axes1_z = (
         rps_base_frame_xz*rps_u_1_x + rps_base_frame_yz*rps_u_1_y + rps_base_frame_zz*rps_u_1_z
         )
+        # (rps-bias) acceleration of the connection point at zero joint accelerations
+        rps_bias_in_axes1_y = 2.0*rps_S_dot_in_axes1_x*rps_qd_1
         # (rps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
+        rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - rps_bias_in_axes1_y
         # (rps-qdd_1_o) remainder of: acceleration of joint 1
         rps_qdd_1_o = inv_rps_q_2*rps_rel_o_in_axes1_y
-        # (rps-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
+        # (rps-acc_2) acceleration of the reference point of link 2, less gravity
         rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
         rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
+        # (rps-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rps_acc_2_o_in_axes1_x = (
         axis_x_rps_axes1_x*rps_u_1_x + axis_x_rps_axes1_y*rps_u_1_y + axis_x_rps_axes1_z*rps_u_1_z
             - rps_g_in_axes1_x
         )
         rps_acc_2_o_in_axes1_y = rps_u_1_in_axes1_y - rps_g_in_axes1_y
+        # (rps-f_2) inertia force of link 2 less its weight
+        rps_f_2_t = rps_W_1_t*rps_h_2_in_spec1_x
+        rps_f_2_t_2 = rps_W_1_t*rps_h_2_in_spec1_y
         # (rps-f_2_o) remainder of: inertia force of link 2 less its weight
         rps_f_2_o_in_axes1_x = (
-        rps_acc_2_o_in_axes1_x*rps_link2_mass - rps_W_1_t*rps_h_2_in_spec1_x -
-            rps_h_2_in_spec1_y*rps_qdd_1_o
+        rps_acc_2_o_in_axes1_x*rps_link2_mass - rps_f_2_t - rps_h_2_in_spec1_y*rps_qdd_1_o
         )
         rps_f_2_o_in_axes1_y = (
-        rps_acc_2_o_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1_o -
-            rps_W_1_t*rps_h_2_in_spec1_y
+        rps_acc_2_o_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1_o - rps_f_2_t_2
         )
+        # (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rps_mu_1_t = rps_g_in_axes1_y*rps_h_1_in_spec1_x - rps_g_in_axes1_x*rps_h_1_in_spec1_y
         # (rps-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rps_mu_1_o_in_axes1_z = (
-        rps_J_group_1_in_axes1_zz*rps_qdd_1_o + rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x +
-            rps_g_in_axes1_x*rps_h_1_in_spec1_y - rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y -
-            rps_g_in_axes1_y*rps_h_1_in_spec1_x
+        rps_J_group_1_in_axes1_zz*rps_qdd_1_o + rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x -
+            rps_mu_1_t - rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y
         )
         # (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rps_d_G_in_axes1_yy = (
@@ -2299,33 +2276,39 @@ def _run_M(m, X):
         rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
-        # (rps-w_2) reciprocal vector 2
-        rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
-        rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
-        rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        # (rps-S_dot) velocity of the connection point
+        axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        # (rps-qd_1) rate of joint 1
+        axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
         # (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rps_d_G_in_axes1_yy = (
         inv_rps_q_2*(rps_h_2_in_spec1_x + inv_rps_q_2*rps_J_group_1_in_axes1_zz +
             rps_q_2*(rps_link2_mass + inv_rps_q_2*rps_h_2_in_spec1_x))
         )
         # (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
-        axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
-        axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
         rps_d_c_in_axes1_xy = inv_rps_q_2*rps_h_2_in_spec1_y
-        rps_d_c_t = axis_y_rps_axes1_x*rps_d_c_in_axes1_xy - rps_link2_mass*rps_w_2_x
-        rps_d_c_t_2 = axis_y_rps_axes1_y*rps_d_c_in_axes1_xy - rps_link2_mass*rps_w_2_y
-        rps_d_c_t_3 = rps_d_c_in_axes1_xy*rps_w_2_x - axis_y_rps_axes1_x*rps_d_G_in_axes1_yy
-        rps_d_c_t_4 = rps_d_c_in_axes1_xy*rps_w_2_y - axis_y_rps_axes1_y*rps_d_G_in_axes1_yy
-        rps_d_c_xx = axis_y_rps_axes1_x*rps_d_c_t_3 + rps_d_c_t*rps_w_2_x
-        rps_d_c_xy = axis_y_rps_axes1_y*rps_d_c_t_3 + rps_d_c_t*rps_w_2_y
-        rps_d_c_xz = axis_y_rps_axes1_z*rps_d_c_t_3 + rps_d_c_t*rps_w_2_z
-        rps_d_c_yy = axis_y_rps_axes1_y*rps_d_c_t_4 + rps_d_c_t_2*rps_w_2_y
-        rps_d_c_yz = axis_y_rps_axes1_z*rps_d_c_t_4 + rps_d_c_t_2*rps_w_2_z
+        rps_d_c_t = axis_y_rps_axes1_x*rps_d_c_in_axes1_xy - axis_x_rps_axes1_x*rps_link2_mass
+        rps_d_c_t_2 = axis_y_rps_axes1_y*rps_d_c_in_axes1_xy - axis_x_rps_axes1_y*rps_link2_mass
+        rps_d_c_t_3 = (
+        axis_x_rps_axes1_x*rps_d_c_in_axes1_xy - axis_y_rps_axes1_x*rps_d_G_in_axes1_yy
+        )
+        rps_d_c_t_4 = (
+        axis_x_rps_axes1_y*rps_d_c_in_axes1_xy - axis_y_rps_axes1_y*rps_d_G_in_axes1_yy
+        )
+        rps_d_c_xx = axis_x_rps_axes1_x*rps_d_c_t + axis_y_rps_axes1_x*rps_d_c_t_3
+        rps_d_c_xy = axis_x_rps_axes1_y*rps_d_c_t + axis_y_rps_axes1_y*rps_d_c_t_3
+        rps_d_c_xz = axis_x_rps_axes1_z*rps_d_c_t + axis_y_rps_axes1_z*rps_d_c_t_3
+        rps_d_c_yy = axis_x_rps_axes1_y*rps_d_c_t_2 + axis_y_rps_axes1_y*rps_d_c_t_4
+        rps_d_c_yz = axis_x_rps_axes1_z*rps_d_c_t_2 + axis_y_rps_axes1_z*rps_d_c_t_4
         rps_d_c_zz = (
-        axis_y_rps_axes1_z*(rps_d_c_in_axes1_xy*rps_w_2_z -
-            axis_y_rps_axes1_z*rps_d_G_in_axes1_yy) +
-            rps_w_2_z*(axis_y_rps_axes1_z*rps_d_c_in_axes1_xy - rps_link2_mass*rps_w_2_z)
+        axis_x_rps_axes1_z*(axis_y_rps_axes1_z*rps_d_c_in_axes1_xy -
+            axis_x_rps_axes1_z*rps_link2_mass) +
+            axis_y_rps_axes1_z*(axis_x_rps_axes1_z*rps_d_c_in_axes1_xy -
+            axis_y_rps_axes1_z*rps_d_G_in_axes1_yy)
         )
         # (M_ta) coupling block of M
         rps_M_ta_t = rps_d_c_xy*rps_q_z
@@ -2435,14 +2418,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 336 mul, 252 add, 3 div, 3 sqrt, 0 trig
+# Z: 345 mul, 258 add, 3 div, 3 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2498,6 +2481,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_6*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_6*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_6*R_zy
+    J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
+    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
+    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2506,39 +2505,12 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_rps_x, Z_t_rps_y, Z_t_rps_z, Z_a_rps_x, Z_a_rps_y, Z_a_rps_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -2606,32 +2578,37 @@ def _run_Z(m, X, V):
         rps_u_1_in_axes1_y = (
         axis_y_rps_axes1_x*rps_u_1_x + axis_y_rps_axes1_y*rps_u_1_y + axis_y_rps_axes1_z*rps_u_1_z
         )
+        # (rps-bias) acceleration of the connection point at zero joint accelerations
+        rps_bias_in_axes1_y = 2.0*rps_S_dot_in_axes1_x*rps_qd_1
         # (rps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
+        rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - rps_bias_in_axes1_y
         # (rps-qdd_1_o) remainder of: acceleration of joint 1
         rps_qdd_1_o = inv_rps_q_2*rps_rel_o_in_axes1_y
-        # (rps-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
+        # (rps-acc_2) acceleration of the reference point of link 2, less gravity
         rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
         rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
+        # (rps-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rps_acc_2_o_in_axes1_x = (
         axis_x_rps_axes1_x*rps_u_1_x + axis_x_rps_axes1_y*rps_u_1_y + axis_x_rps_axes1_z*rps_u_1_z
             - rps_g_in_axes1_x
         )
         rps_acc_2_o_in_axes1_y = rps_u_1_in_axes1_y - rps_g_in_axes1_y
+        # (rps-f_2) inertia force of link 2 less its weight
+        rps_f_2_t = rps_W_1_t*rps_h_2_in_spec1_x
+        rps_f_2_t_2 = rps_W_1_t*rps_h_2_in_spec1_y
         # (rps-f_2_o) remainder of: inertia force of link 2 less its weight
         rps_f_2_o_in_axes1_x = (
-        rps_acc_2_o_in_axes1_x*rps_link2_mass - rps_W_1_t*rps_h_2_in_spec1_x -
-            rps_h_2_in_spec1_y*rps_qdd_1_o
+        rps_acc_2_o_in_axes1_x*rps_link2_mass - rps_f_2_t - rps_h_2_in_spec1_y*rps_qdd_1_o
         )
         rps_f_2_o_in_axes1_y = (
-        rps_acc_2_o_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1_o -
-            rps_W_1_t*rps_h_2_in_spec1_y
+        rps_acc_2_o_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1_o - rps_f_2_t_2
         )
+        # (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rps_mu_1_t = rps_g_in_axes1_y*rps_h_1_in_spec1_x - rps_g_in_axes1_x*rps_h_1_in_spec1_y
         # (rps-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rps_mu_1_o_in_axes1_z = (
-        rps_J_group_1_in_axes1_zz*rps_qdd_1_o + rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x +
-            rps_g_in_axes1_x*rps_h_1_in_spec1_y - rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y -
-            rps_g_in_axes1_y*rps_h_1_in_spec1_x
+        rps_J_group_1_in_axes1_zz*rps_qdd_1_o + rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x -
+            rps_mu_1_t - rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y
         )
         # (rps-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y + inv_rps_q_2*rps_mu_1_o_in_axes1_z
@@ -2749,22 +2726,22 @@ def _run_H(m, X):
         rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
-        # (rps-w_2) reciprocal vector 2
-        rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
-        rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
-        rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        # (rps-S_dot) velocity of the connection point
+        axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
         # (rps-H_a_2) moment of the column's unit force about the platform origin
-        rps_H_a_2_x = rps_q_y*rps_w_2_z - rps_q_z*rps_w_2_y
-        rps_H_a_2_y = rps_q_z*rps_w_2_x - rps_q_x*rps_w_2_z
-        rps_H_a_2_z = rps_q_x*rps_w_2_y - rps_q_y*rps_w_2_x
+        rps_H_a_2_x = axis_x_rps_axes1_z*rps_q_y - axis_x_rps_axes1_y*rps_q_z
+        rps_H_a_2_y = axis_x_rps_axes1_x*rps_q_z - axis_x_rps_axes1_z*rps_q_x
+        rps_H_a_2_z = axis_x_rps_axes1_y*rps_q_x - axis_x_rps_axes1_x*rps_q_y
         ok = (
         ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_q_2) > _TOLERANCE *
             0.75)
         )
         # (rps-w_2) reciprocal vector 2
-        out_H[_H_rps[0][leg]] = rps_w_2_x
-        out_H[_H_rps[1][leg]] = rps_w_2_y
-        out_H[_H_rps[2][leg]] = rps_w_2_z
+        out_H[_H_rps[0][leg]] = axis_x_rps_axes1_x
+        out_H[_H_rps[1][leg]] = axis_x_rps_axes1_y
+        out_H[_H_rps[2][leg]] = axis_x_rps_axes1_z
         # (rps-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rps[3][leg]] = rps_H_a_2_x
         out_H[_H_rps[4][leg]] = rps_H_a_2_y
@@ -2811,7 +2788,7 @@ def _run_Hk(m, X):
         rps_base_frame_xz, rps_base_frame_yz, rps_base_frame_zz, rps_platform_point_x,
             rps_platform_point_y, rps_platform_point_z,
         ) = k
-        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
+        # (rps-S) from the base point to the connection point
         rps_q_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
@@ -2821,6 +2798,7 @@ def _run_Hk(m, X):
         rps_q_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
+        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
         rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z
         rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x
         rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y
@@ -2881,7 +2859,7 @@ def _run_constraint_bias(m, X, V):
         rps_base_frame_xz, rps_base_frame_yz, rps_base_frame_zz, rps_platform_point_x,
             rps_platform_point_y, rps_platform_point_z,
         ) = k
-        # (rps-u_1) centripetal acceleration of the connection point
+        # (rps-S) from the base point to the connection point
         rps_q_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
@@ -2891,20 +2869,23 @@ def _run_constraint_bias(m, X, V):
         rps_q_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        rps_u_1_t = omega_y*rps_q_z - omega_z*rps_q_y
-        rps_u_1_t_2 = omega_z*rps_q_x - omega_x*rps_q_z
-        rps_u_1_t_3 = omega_x*rps_q_y - omega_y*rps_q_x
+        # (rps-S_dot) velocity of the connection point
+        rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y
+        rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z
+        rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x
+        # (rps-u_1) centripetal acceleration of the connection point
+        rps_u_1_x = omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
+        rps_u_1_y = omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
+        rps_u_1_z = omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
         rps_u_1_in_axes1_z = (
-        rps_base_frame_xz*(omega_y*rps_u_1_t_3 - omega_z*rps_u_1_t_2) +
-            rps_base_frame_yz*(omega_z*rps_u_1_t - omega_x*rps_u_1_t_3) +
-            rps_base_frame_zz*(omega_x*rps_u_1_t_2 - omega_y*rps_u_1_t)
+        rps_base_frame_xz*rps_u_1_x + rps_base_frame_yz*rps_u_1_y + rps_base_frame_zz*rps_u_1_z
         )
         # (rps-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_rps[0][leg]] = rps_u_1_in_axes1_z
     return ok, (out_constraint_bias,)
 
 
-# required: 414 mul, 324 add, 3 div, 3 sqrt, 0 trig
+# required: 405 mul, 315 add, 3 div, 3 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -2979,9 +2960,22 @@ def _run_required(m, X, V, A):
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -2994,21 +2988,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*platform_mass + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) -
-        h_star_x*(f_p_t_2 + f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*platform_mass + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) -
-        h_star_y*(f_p_t + f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*platform_mass + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) -
-        h_star_z*(f_p_t + f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*platform_mass - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*platform_mass - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*platform_mass - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -3110,44 +3092,43 @@ def _run_required(m, X, V, A):
         )
         # (rps-W_1) centripetal tensor of link 1
         rps_W_1_t = rps_qd_1*rps_qd_1
-        # (rps-a_p) acceleration of the connection point without its centripetal part
-        rps_a_p_x = t_ddot_x + alpha_y*rps_q_z - alpha_z*rps_q_y
-        rps_a_p_y = t_ddot_y + alpha_z*rps_q_x - alpha_x*rps_q_z
-        rps_a_p_z = t_ddot_z + alpha_x*rps_q_y - alpha_y*rps_q_x
         # (rps-S_ddot) acceleration of the connection point
-        rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
-        rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
-        rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
+        rps_S_ddot_x = t_ddot_x + B_p_xy*rps_q_y + B_p_xz*rps_q_z - W_p_t_4*rps_q_x
+        rps_S_ddot_y = t_ddot_y + B_p_yx*rps_q_x + B_p_yz*rps_q_z - W_p_t_5*rps_q_y
+        rps_S_ddot_z = t_ddot_z + B_p_zx*rps_q_x + B_p_zy*rps_q_y - W_p_t_6*rps_q_z
+        rps_S_ddot_in_axes1_x = (
+        axis_x_rps_axes1_x*rps_S_ddot_x + axis_x_rps_axes1_y*rps_S_ddot_y +
+            axis_x_rps_axes1_z*rps_S_ddot_z
+        )
         rps_S_ddot_in_axes1_y = (
         axis_y_rps_axes1_x*rps_S_ddot_x + axis_y_rps_axes1_y*rps_S_ddot_y +
             axis_y_rps_axes1_z*rps_S_ddot_z
         )
+        # (rps-bias) acceleration of the connection point at zero joint accelerations
+        rps_bias_in_axes1_y = 2.0*rps_S_dot_in_axes1_x*rps_qd_1
         # (rps-rel) acceleration of the connection point left to the joint accelerations
-        rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
+        rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y - rps_bias_in_axes1_y
         # (rps-qdd_1) acceleration of joint 1
         rps_qdd_1 = inv_rps_q_2*rps_rel_in_axes1_y
         # (rps-acc_2) acceleration of the reference point of link 2, less gravity
         rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
         rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
-        rps_acc_2_in_axes1_x = (
-        axis_x_rps_axes1_x*rps_S_ddot_x + axis_x_rps_axes1_y*rps_S_ddot_y +
-            axis_x_rps_axes1_z*rps_S_ddot_z - rps_g_in_axes1_x
-        )
+        rps_acc_2_in_axes1_x = rps_S_ddot_in_axes1_x - rps_g_in_axes1_x
         rps_acc_2_in_axes1_y = rps_S_ddot_in_axes1_y - rps_g_in_axes1_y
         # (rps-f_2) inertia force of link 2 less its weight
+        rps_f_2_t = rps_W_1_t*rps_h_2_in_spec1_x
+        rps_f_2_t_2 = rps_W_1_t*rps_h_2_in_spec1_y
         rps_f_2_in_axes1_x = (
-        rps_acc_2_in_axes1_x*rps_link2_mass - rps_W_1_t*rps_h_2_in_spec1_x -
-            rps_h_2_in_spec1_y*rps_qdd_1
+        rps_acc_2_in_axes1_x*rps_link2_mass - rps_f_2_t - rps_h_2_in_spec1_y*rps_qdd_1
         )
         rps_f_2_in_axes1_y = (
-        rps_acc_2_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1 -
-            rps_W_1_t*rps_h_2_in_spec1_y
+        rps_acc_2_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1 - rps_f_2_t_2
         )
         # (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rps_mu_1_t = rps_g_in_axes1_y*rps_h_1_in_spec1_x - rps_g_in_axes1_x*rps_h_1_in_spec1_y
         rps_mu_1_in_axes1_z = (
-        rps_J_group_1_in_axes1_zz*rps_qdd_1 + rps_acc_2_in_axes1_y*rps_h_2_in_spec1_x +
-            rps_g_in_axes1_x*rps_h_1_in_spec1_y - rps_acc_2_in_axes1_x*rps_h_2_in_spec1_y -
-            rps_g_in_axes1_y*rps_h_1_in_spec1_x
+        rps_J_group_1_in_axes1_zz*rps_qdd_1 + rps_acc_2_in_axes1_y*rps_h_2_in_spec1_x - rps_mu_1_t
+            - rps_acc_2_in_axes1_x*rps_h_2_in_spec1_y
         )
         # (rps-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rps_G_in_axes1_y = rps_f_2_in_axes1_y + inv_rps_q_2*rps_mu_1_in_axes1_z
@@ -3264,18 +3245,18 @@ def _run_inverse_kinematics(m, X):
             rps_platform_point_z,
         ) = k
         # (rps-S) from the base point to the connection point
-        rps_S_x = (
-        t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z -
-            rps_base_point_x
+        rps_q_x = (
+        R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_S_y = (
-        t_y + R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z -
-            rps_base_point_y
+        rps_q_y = (
+        R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_S_z = (
-        t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z -
-            rps_base_point_z
+        rps_q_z = (
+        R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
+        rps_S_x = rps_q_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_z + t_z - rps_base_point_z
         rps_S_in_turn1_x = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
@@ -3285,9 +3266,13 @@ def _run_inverse_kinematics(m, X):
         # (rps-q_2) displacement of joint 2
         rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x + rps_S_in_turn1_y*rps_S_in_turn1_y
         rps_q_2 = rps_branch_1*sqrt(rps_q_2_t)
-        # (rps-q_1) displacement of joint 1
+        # (rps-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rps_q_2 = 1.0/rps_q_2
-        rps_q_1 = atan2(inv_rps_q_2*rps_S_in_turn1_y, inv_rps_q_2*rps_S_in_turn1_x)
+        rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
+        # (rps-s_1) sine of the angle of joint 1 from its reference direction
+        rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
+        # (rps-q_1) displacement of joint 1
+        rps_q_1 = atan2(rps_s_1, rps_c_1)
         ok = ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625)
         # (rps-q_1) displacement of joint 1
         out_q[_q_rps[0][leg]] = rps_q_1
@@ -3385,19 +3370,26 @@ def _run_joint_rates(m, X, V):
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
         # (rps-S_dot) velocity of the connection point
-        rps_S_dot_x = t_dot_x + omega_y*rps_q_z - omega_z*rps_q_y
-        rps_S_dot_y = t_dot_y + omega_z*rps_q_x - omega_x*rps_q_z
-        rps_S_dot_z = t_dot_z + omega_x*rps_q_y - omega_y*rps_q_x
+        axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y
+        rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z
+        rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x
+        rps_S_dot_x = rps_S_dot_t + t_dot_x
+        rps_S_dot_y = rps_S_dot_t_2 + t_dot_y
+        rps_S_dot_z = rps_S_dot_t_3 + t_dot_z
         rps_S_dot_in_axes1_x = (
-        rps_S_dot_x*(rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1) +
-            rps_S_dot_y*(rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1) +
-            rps_S_dot_z*(rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1)
+        axis_x_rps_axes1_x*rps_S_dot_x + axis_x_rps_axes1_y*rps_S_dot_y +
+            axis_x_rps_axes1_z*rps_S_dot_z
         )
         # (rps-qd_1) rate of joint 1
+        axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
         rps_qd_1 = (
-        inv_rps_q_2*(rps_S_dot_x*(rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1) +
-            rps_S_dot_y*(rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1) +
-            rps_S_dot_z*(rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1))
+        inv_rps_q_2*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
+            axis_y_rps_axes1_z*rps_S_dot_z)
         )
         ok = (
         ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_q_2) > _TOLERANCE *
@@ -3410,7 +3402,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 204 mul, 153 add, 3 div, 3 sqrt, 0 trig
+# joint_accelerations: 201 mul, 153 add, 3 div, 3 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -3477,6 +3469,23 @@ def _run_joint_accelerations(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
@@ -3533,23 +3542,25 @@ def _run_joint_accelerations(m, X, V, A):
         inv_rps_q_2*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
             axis_y_rps_axes1_z*rps_S_dot_z)
         )
-        # (rps-a_p) acceleration of the connection point without its centripetal part
-        rps_a_p_x = t_ddot_x + alpha_y*rps_q_z - alpha_z*rps_q_y
-        rps_a_p_y = t_ddot_y + alpha_z*rps_q_x - alpha_x*rps_q_z
-        rps_a_p_z = t_ddot_z + alpha_x*rps_q_y - alpha_y*rps_q_x
+        # (rps-W_1) centripetal tensor of link 1
+        rps_W_1_t = rps_qd_1*rps_qd_1
         # (rps-S_ddot) acceleration of the connection point
-        rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
-        rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
-        rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
-        # (rps-rel) acceleration of the connection point left to the joint accelerations
-        rps_rel_in_axes1_x = (
+        rps_S_ddot_x = t_ddot_x + B_p_xy*rps_q_y + B_p_xz*rps_q_z - W_p_t_4*rps_q_x
+        rps_S_ddot_y = t_ddot_y + B_p_yx*rps_q_x + B_p_yz*rps_q_z - W_p_t_5*rps_q_y
+        rps_S_ddot_z = t_ddot_z + B_p_zx*rps_q_x + B_p_zy*rps_q_y - W_p_t_6*rps_q_z
+        rps_S_ddot_in_axes1_x = (
         axis_x_rps_axes1_x*rps_S_ddot_x + axis_x_rps_axes1_y*rps_S_ddot_y +
-            axis_x_rps_axes1_z*rps_S_ddot_z + rps_q_2*rps_qd_1*rps_qd_1
+            axis_x_rps_axes1_z*rps_S_ddot_z
         )
-        rps_rel_in_axes1_y = (
+        rps_S_ddot_in_axes1_y = (
         axis_y_rps_axes1_x*rps_S_ddot_x + axis_y_rps_axes1_y*rps_S_ddot_y +
-            axis_y_rps_axes1_z*rps_S_ddot_z - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
+            axis_y_rps_axes1_z*rps_S_ddot_z
         )
+        # (rps-bias) acceleration of the connection point at zero joint accelerations
+        rps_bias_in_axes1_y = 2.0*rps_S_dot_in_axes1_x*rps_qd_1
+        # (rps-rel) acceleration of the connection point left to the joint accelerations
+        rps_rel_in_axes1_x = rps_S_ddot_in_axes1_x + rps_W_1_t*rps_q_2
+        rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y - rps_bias_in_axes1_y
         # (rps-qdd_1) acceleration of joint 1
         rps_qdd_1 = inv_rps_q_2*rps_rel_in_axes1_y
         ok = (
@@ -3610,18 +3621,18 @@ def _run_constraints(m, X):
             rps_platform_point_z,
         ) = k
         # (rps-S) from the base point to the connection point
-        rps_S_x = (
-        t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z -
-            rps_base_point_x
+        rps_q_x = (
+        R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_S_y = (
-        t_y + R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z -
-            rps_base_point_y
+        rps_q_y = (
+        R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_S_z = (
-        t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z -
-            rps_base_point_z
+        rps_q_z = (
+        R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
+        rps_S_x = rps_q_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_z + t_z - rps_base_point_z
         rps_S_in_turn1_z = (
         rps_S_x*rps_base_frame_xz + rps_S_y*rps_base_frame_yz + rps_S_z*rps_base_frame_zz
         )
@@ -3630,7 +3641,7 @@ def _run_constraints(m, X):
     return ok, (out_constraints,)
 
 
-# legs: 267 mul, 198 add, 3 div, 3 sqrt, 0 trig
+# legs: 264 mul, 198 add, 3 div, 3 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -3699,6 +3710,23 @@ def _run_legs(m, X, V, A):
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
     out_constraint_direction = m.zeros("constraint_direction")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
@@ -3759,44 +3787,43 @@ def _run_legs(m, X, V, A):
         )
         # (rps-W_1) centripetal tensor of link 1
         rps_W_1_t = rps_qd_1*rps_qd_1
-        # (rps-a_p) acceleration of the connection point without its centripetal part
-        rps_a_p_x = t_ddot_x + alpha_y*rps_q_z - alpha_z*rps_q_y
-        rps_a_p_y = t_ddot_y + alpha_z*rps_q_x - alpha_x*rps_q_z
-        rps_a_p_z = t_ddot_z + alpha_x*rps_q_y - alpha_y*rps_q_x
         # (rps-S_ddot) acceleration of the connection point
-        rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
-        rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
-        rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
+        rps_S_ddot_x = t_ddot_x + B_p_xy*rps_q_y + B_p_xz*rps_q_z - W_p_t_4*rps_q_x
+        rps_S_ddot_y = t_ddot_y + B_p_yx*rps_q_x + B_p_yz*rps_q_z - W_p_t_5*rps_q_y
+        rps_S_ddot_z = t_ddot_z + B_p_zx*rps_q_x + B_p_zy*rps_q_y - W_p_t_6*rps_q_z
+        rps_S_ddot_in_axes1_x = (
+        axis_x_rps_axes1_x*rps_S_ddot_x + axis_x_rps_axes1_y*rps_S_ddot_y +
+            axis_x_rps_axes1_z*rps_S_ddot_z
+        )
         rps_S_ddot_in_axes1_y = (
         axis_y_rps_axes1_x*rps_S_ddot_x + axis_y_rps_axes1_y*rps_S_ddot_y +
             axis_y_rps_axes1_z*rps_S_ddot_z
         )
+        # (rps-bias) acceleration of the connection point at zero joint accelerations
+        rps_bias_in_axes1_y = 2.0*rps_S_dot_in_axes1_x*rps_qd_1
         # (rps-rel) acceleration of the connection point left to the joint accelerations
-        rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
+        rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y - rps_bias_in_axes1_y
         # (rps-qdd_1) acceleration of joint 1
         rps_qdd_1 = inv_rps_q_2*rps_rel_in_axes1_y
         # (rps-acc_2) acceleration of the reference point of link 2, less gravity
         rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
         rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
-        rps_acc_2_in_axes1_x = (
-        axis_x_rps_axes1_x*rps_S_ddot_x + axis_x_rps_axes1_y*rps_S_ddot_y +
-            axis_x_rps_axes1_z*rps_S_ddot_z - rps_g_in_axes1_x
-        )
+        rps_acc_2_in_axes1_x = rps_S_ddot_in_axes1_x - rps_g_in_axes1_x
         rps_acc_2_in_axes1_y = rps_S_ddot_in_axes1_y - rps_g_in_axes1_y
         # (rps-f_2) inertia force of link 2 less its weight
+        rps_f_2_t = rps_W_1_t*rps_h_2_in_spec1_x
+        rps_f_2_t_2 = rps_W_1_t*rps_h_2_in_spec1_y
         rps_f_2_in_axes1_x = (
-        rps_acc_2_in_axes1_x*rps_link2_mass - rps_W_1_t*rps_h_2_in_spec1_x -
-            rps_h_2_in_spec1_y*rps_qdd_1
+        rps_acc_2_in_axes1_x*rps_link2_mass - rps_f_2_t - rps_h_2_in_spec1_y*rps_qdd_1
         )
         rps_f_2_in_axes1_y = (
-        rps_acc_2_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1 -
-            rps_W_1_t*rps_h_2_in_spec1_y
+        rps_acc_2_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1 - rps_f_2_t_2
         )
         # (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rps_mu_1_t = rps_g_in_axes1_y*rps_h_1_in_spec1_x - rps_g_in_axes1_x*rps_h_1_in_spec1_y
         rps_mu_1_in_axes1_z = (
-        rps_J_group_1_in_axes1_zz*rps_qdd_1 + rps_acc_2_in_axes1_y*rps_h_2_in_spec1_x +
-            rps_g_in_axes1_x*rps_h_1_in_spec1_y - rps_acc_2_in_axes1_x*rps_h_2_in_spec1_y -
-            rps_g_in_axes1_y*rps_h_1_in_spec1_x
+        rps_J_group_1_in_axes1_zz*rps_qdd_1 + rps_acc_2_in_axes1_y*rps_h_2_in_spec1_x - rps_mu_1_t
+            - rps_acc_2_in_axes1_x*rps_h_2_in_spec1_y
         )
         # (rps-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rps_G_in_axes1_y = rps_f_2_in_axes1_y + inv_rps_q_2*rps_mu_1_in_axes1_z
@@ -3868,12 +3895,14 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        platform_mass*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + platform_mass*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + platform_mass*t_z)
+    gravity_x*(h_star_x + platform_mass*t_x) + gravity_y*(h_star_y + platform_mass*t_y) +
+        gravity_z*(h_star_z + platform_mass*t_z)
     )
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
@@ -3886,18 +3915,18 @@ def _run_potential(m, X):
             rps_potential_t, rps_potential_t_2, rps_potential_t_3,
         ) = k
         # (rps-S) from the base point to the connection point
-        rps_S_x = (
-        t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z -
-            rps_base_point_x
+        rps_q_x = (
+        R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_S_y = (
-        t_y + R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z -
-            rps_base_point_y
+        rps_q_y = (
+        R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_S_z = (
-        t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z -
-            rps_base_point_z
+        rps_q_z = (
+        R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
+        rps_S_x = rps_q_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_z + t_z - rps_base_point_z
         rps_S_in_turn1_x = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
@@ -3912,14 +3941,16 @@ def _run_potential(m, X):
         rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
+        # (rps-acc_2) acceleration of the reference point of link 2, less gravity
+        rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
+        rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
         # (potential) potential energy
         rps_b_in_spec1_x = rps_c_1*rps_potential_t + rps_potential_t_2*rps_s_1
         rps_b_in_spec1_y = rps_c_1*rps_potential_t_2 - rps_potential_t*rps_s_1
         rps_potential_t_4 = (
-        rps_potential_t_3 + (rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1)*(rps_h_1_in_spec1_x +
-            rps_h_2_in_spec1_x + rps_b_in_spec1_x*rps_link1_mass +
-            rps_link2_mass*(rps_b_in_spec1_x + rps_q_2)) + (rps_acc_2_t_2*rps_c_1 -
-            rps_acc_2_t*rps_s_1)*(rps_h_1_in_spec1_y + rps_h_2_in_spec1_y +
+        rps_potential_t_3 + rps_g_in_axes1_x*(rps_h_1_in_spec1_x + rps_h_2_in_spec1_x +
+            rps_b_in_spec1_x*rps_link1_mass + rps_link2_mass*(rps_b_in_spec1_x + rps_q_2)) +
+            rps_g_in_axes1_y*(rps_h_1_in_spec1_y + rps_h_2_in_spec1_y +
             rps_b_in_spec1_y*rps_link1_mass + rps_b_in_spec1_y*rps_link2_mass)
         )
         ok = ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625)
@@ -4018,10 +4049,10 @@ def _run_condition(m, X):
         rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
-        # (rps-w_2) reciprocal vector 2
-        rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
-        rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
-        rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        # (rps-S_dot) velocity of the connection point
+        axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
         # (rps-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rps_pivot_size = abs(rps_q_2_t)
         rps_pivot_size_2 = abs(rps_q_2)
@@ -4029,9 +4060,9 @@ def _run_condition(m, X):
         least(1.3333333333333333*sqrt(rps_pivot_size), 1.3333333333333333*rps_pivot_size_2)
         )
         # (rps-H_a_2) moment of the column's unit force about the platform origin
-        rps_H_a_2_x = rps_q_y*rps_w_2_z - rps_q_z*rps_w_2_y
-        rps_H_a_2_y = rps_q_z*rps_w_2_x - rps_q_x*rps_w_2_z
-        rps_H_a_2_z = rps_q_x*rps_w_2_y - rps_q_y*rps_w_2_x
+        rps_H_a_2_x = axis_x_rps_axes1_z*rps_q_y - axis_x_rps_axes1_y*rps_q_z
+        rps_H_a_2_y = axis_x_rps_axes1_x*rps_q_z - axis_x_rps_axes1_z*rps_q_x
+        rps_H_a_2_z = axis_x_rps_axes1_y*rps_q_x - axis_x_rps_axes1_x*rps_q_y
         # (rps-Hk_a_1) moment of the column's unit force about the platform origin
         rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z
         rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x
@@ -4050,9 +4081,9 @@ def _run_condition(m, X):
         # (spread) rms distance of the platform points from their centroid
         spread_rps += rps_spread_t_4
         # (rps-w_2) reciprocal vector 2
-        out_H[_H_rps[0][leg]] = rps_w_2_x
-        out_H[_H_rps[1][leg]] = rps_w_2_y
-        out_H[_H_rps[2][leg]] = rps_w_2_z
+        out_H[_H_rps[0][leg]] = axis_x_rps_axes1_x
+        out_H[_H_rps[1][leg]] = axis_x_rps_axes1_y
+        out_H[_H_rps[2][leg]] = axis_x_rps_axes1_z
         # (rps-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rps[3][leg]] = rps_H_a_2_x
         out_H[_H_rps[4][leg]] = rps_H_a_2_y
@@ -4370,14 +4401,14 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_1 = q[[1, 3, 5]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_1
     constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_1 = -constraints
-    gap = np.concatenate((subtract_1, negative_1))
-    return (gap,)
+    residual = np.concatenate((subtract_1, negative_1))
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -4388,14 +4419,14 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 
-def _steps_constraint_gap(m, X):
+def _steps_constraint_residual(m, X):
     constraints, = m.run(_run_constraints, ("constraints",), X)
-    gap = -constraints
-    return (gap,)
+    residual = -constraints
+    return (residual,)
 
 
 def _steps_constraint_slope(m, X):
@@ -4404,7 +4435,7 @@ def _steps_constraint_slope(m, X):
 
 
 def _steps_project(m, X):
-    projected = _search(m, _steps_constraint_gap, _steps_constraint_slope, X, (), (), False)
+    projected = _search(m, _steps_constraint_residual, _steps_constraint_slope, X, (), (), False)
     return (projected,)
 
 

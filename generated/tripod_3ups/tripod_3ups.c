@@ -147,9 +147,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -211,6 +211,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -259,7 +283,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -269,7 +293,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -282,7 +306,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -299,16 +323,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -316,7 +340,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1129,17 +1162,17 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real ups_S_in_turn1_x, ups_S_in_turn1_y, ups_S_in_turn1_z, ups_root_1_t, ups_root_1,
-        inv_ups_root_1, ups_c_1, ups_s_1, ups_q_3_t, ups_q_3, inv_ups_q_3, ups_c_2,
-        axis_x_ups_axes2_x, axis_x_ups_axes2_y, axis_x_ups_axes2_z, axis_z_ups_axes2_x,
-        axis_z_ups_axes2_y, axis_z_ups_axes2_z, axis_y_ups_axes2_x, axis_y_ups_axes2_y,
-        axis_y_ups_axes2_z, ups_e_1_in_axes2_x, ups_g_in_axes2_z, ups_w_2_in_axes2_y, ups_w_3_x,
-        ups_w_3_y, ups_w_3_z, ups_S_dot_in_axes2_x, ups_qd_1, ups_qd_2, ups_omega_1_in_axes2_x,
-        ups_omega_1_in_axes2_y, ups_W_2_in_axes2_yz, ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xy,
-        ups_bias_t, ups_bias_in_axes2_z, ups_U_x, ups_U_y, ups_U_z, ups_alpha_1_in_axes2_x,
-        ups_alpha_1_in_axes2_y, ups_B_2_in_axes2_yx, ups_B_2_in_axes2_xy, ups_B_2_in_axes2_zx,
-        ups_B_2_in_axes2_zy, ups_g_in_axes2_x, ups_g_in_axes2_y, ups_acc_3_in_axes2_x,
-        ups_acc_3_in_axes2_y, ups_acc_3_in_axes2_z, ups_mu_2_t;
+    real ups_root_1_t, ups_root_1, inv_ups_root_1, ups_c_1, ups_s_1, ups_q_3_t, ups_q_3, inv_ups_q_3,
+        ups_c_2, ups_e_1_in_axes2_x, axis_x_ups_axes2_x, axis_x_ups_axes2_y, axis_x_ups_axes2_z,
+        axis_z_ups_axes2_x, axis_z_ups_axes2_y, axis_z_ups_axes2_z, axis_y_ups_axes2_x,
+        axis_y_ups_axes2_y, axis_y_ups_axes2_z, ups_g_in_axes2_z, ups_g_in_axes2_x, ups_g_in_axes2_y,
+        ups_mu_2_t_5, ups_mu_2_t_6, ups_mu_2_t_7, ups_S_ddot_in_axes2_x, ups_S_ddot_t, ups_S_ddot_t_2,
+        ups_S_ddot_t_3, ups_S_ddot_in_axes2_z, ups_S_dot_in_axes2_x, ups_qd_1, ups_qd_2,
+        ups_W_2_in_axes2_yz, ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xx, ups_W_2_in_axes2_xy,
+        ups_bias_in_axes2_z, ups_qdd_2_t, ups_phi_3_t, ups_mu_2_t_2, ups_mu_2_t_3, ups_mu_2_t_4,
+        ups_c_t, ups_c_t_2, ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_Q_xx, ups_Q_xy, ups_Q_xz,
+        ups_Q_yy, ups_Q_yz, ups_Q_zz, ups_U_x, ups_U_y, ups_U_z, ups_S_ddot_in_axes2_y,
+        ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z;
 } values_ups;
 
 INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_ups
@@ -1159,113 +1192,177 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real ups_S_in_turn1_z = ups_S_x*m->ups_base_frame_xz[i] +
         ups_S_y*m->ups_base_frame_yz[i] + ups_S_z*m->ups_base_frame_zz[i];
     /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
-        ups_S_in_turn1_y*ups_S_in_turn1_y;
-    const real ups_root_1 = m->ups_branch_1[i]*root(ups_root_1_t);
+    v->ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y;
+    v->ups_root_1 = m->ups_branch_1[i]*root(v->ups_root_1_t);
     /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_ups_root_1 = 1/ups_root_1;
-    const real ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x;
+    v->inv_ups_root_1 = 1/v->ups_root_1;
+    v->ups_c_1 = v->inv_ups_root_1*ups_S_in_turn1_x;
     /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-    const real ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y;
+    v->ups_s_1 = v->inv_ups_root_1*ups_S_in_turn1_y;
     /* (ups-q_3) displacement of joint 3 */
-    const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
-    const real ups_q_3 = m->ups_branch_2[i]*root(ups_q_3_t);
+    v->ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + v->ups_root_1_t;
+    v->ups_q_3 = m->ups_branch_2[i]*root(v->ups_q_3_t);
     /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_ups_q_3 = 1/ups_q_3;
-    const real ups_c_2 = inv_ups_q_3*ups_root_1;
+    v->inv_ups_q_3 = 1/v->ups_q_3;
+    v->ups_c_2 = v->inv_ups_q_3*v->ups_root_1;
+    /* (ups-q_2) displacement of joint 2 */
+    v->ups_e_1_in_axes2_x = v->inv_ups_q_3*ups_S_in_turn1_z;
     /* (ups-S_dot) velocity of the connection point */
-    const real axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x;
-    const real axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y;
-    const real axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z;
+    v->axis_x_ups_axes2_x = v->inv_ups_q_3*ups_S_x;
+    v->axis_x_ups_axes2_y = v->inv_ups_q_3*ups_S_y;
+    v->axis_x_ups_axes2_z = v->inv_ups_q_3*ups_S_z;
     /* (ups-qd_1) rate of joint 1 */
-    const real axis_z_ups_axes2_x = m->ups_base_frame_xy[i]*ups_c_1 -
-        m->ups_base_frame_xx[i]*ups_s_1;
-    const real axis_z_ups_axes2_y = m->ups_base_frame_yy[i]*ups_c_1 -
-        m->ups_base_frame_yx[i]*ups_s_1;
-    const real axis_z_ups_axes2_z = m->ups_base_frame_zy[i]*ups_c_1 -
-        m->ups_base_frame_zx[i]*ups_s_1;
+    v->axis_z_ups_axes2_x = m->ups_base_frame_xy[i]*v->ups_c_1 -
+        m->ups_base_frame_xx[i]*v->ups_s_1;
+    v->axis_z_ups_axes2_y = m->ups_base_frame_yy[i]*v->ups_c_1 -
+        m->ups_base_frame_yx[i]*v->ups_s_1;
+    v->axis_z_ups_axes2_z = m->ups_base_frame_zy[i]*v->ups_c_1 -
+        m->ups_base_frame_zx[i]*v->ups_s_1;
     /* (ups-qd_2) rate of joint 2 */
-    const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-        axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-    const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-        axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-    const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-        axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-    /* (ups-omega_1) angular velocity of link 1 */
-    const real ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z;
-    /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real ups_g_in_axes2_z = m->ups_acc_3_t_2[i]*ups_c_1 - m->ups_acc_3_t[i]*ups_s_1;
-    /* (ups-w_2) reciprocal vector 2 */
-    const real ups_w_2_in_axes2_y = 1/ups_q_3;
-    /* (ups-w_3) reciprocal vector 3 */
-    const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
-    const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
-    const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
-    v->ups_S_in_turn1_x = ups_S_in_turn1_x;
-    v->ups_S_in_turn1_y = ups_S_in_turn1_y;
-    v->ups_S_in_turn1_z = ups_S_in_turn1_z;
-    v->ups_root_1_t = ups_root_1_t;
-    v->ups_root_1 = ups_root_1;
-    v->inv_ups_root_1 = inv_ups_root_1;
-    v->ups_c_1 = ups_c_1;
-    v->ups_s_1 = ups_s_1;
-    v->ups_q_3_t = ups_q_3_t;
-    v->ups_q_3 = ups_q_3;
-    v->inv_ups_q_3 = inv_ups_q_3;
-    v->ups_c_2 = ups_c_2;
-    v->axis_x_ups_axes2_x = axis_x_ups_axes2_x;
-    v->axis_x_ups_axes2_y = axis_x_ups_axes2_y;
-    v->axis_x_ups_axes2_z = axis_x_ups_axes2_z;
-    v->axis_z_ups_axes2_x = axis_z_ups_axes2_x;
-    v->axis_z_ups_axes2_y = axis_z_ups_axes2_y;
-    v->axis_z_ups_axes2_z = axis_z_ups_axes2_z;
-    v->axis_y_ups_axes2_x = axis_y_ups_axes2_x;
-    v->axis_y_ups_axes2_y = axis_y_ups_axes2_y;
-    v->axis_y_ups_axes2_z = axis_y_ups_axes2_z;
-    v->ups_e_1_in_axes2_x = ups_e_1_in_axes2_x;
-    v->ups_g_in_axes2_z = ups_g_in_axes2_z;
-    v->ups_w_2_in_axes2_y = ups_w_2_in_axes2_y;
-    v->ups_w_3_x = ups_w_3_x;
-    v->ups_w_3_y = ups_w_3_y;
-    v->ups_w_3_z = ups_w_3_z;
+    v->axis_y_ups_axes2_x = v->axis_x_ups_axes2_z*v->axis_z_ups_axes2_y -
+        v->axis_x_ups_axes2_y*v->axis_z_ups_axes2_z;
+    v->axis_y_ups_axes2_y = v->axis_x_ups_axes2_x*v->axis_z_ups_axes2_z -
+        v->axis_x_ups_axes2_z*v->axis_z_ups_axes2_x;
+    v->axis_y_ups_axes2_z = v->axis_x_ups_axes2_y*v->axis_z_ups_axes2_x -
+        v->axis_x_ups_axes2_x*v->axis_z_ups_axes2_y;
+    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real ups_acc_3_t_4 = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
+    v->ups_g_in_axes2_z = m->ups_acc_3_t_2[i]*v->ups_c_1 - m->ups_acc_3_t[i]*v->ups_s_1;
+    v->ups_g_in_axes2_x = m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x +
+        ups_acc_3_t_4*v->ups_c_2;
+    v->ups_g_in_axes2_y = ups_acc_3_t_4*v->ups_e_1_in_axes2_x -
+        m->ups_acc_3_t_3[i]*v->ups_c_2;
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    v->ups_mu_2_t_5 = v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_y[i] -
+        v->ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_z[i];
+    v->ups_mu_2_t_6 = v->ups_g_in_axes2_x*m->ups_h_group_2_in_axes2_z[i] -
+        v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_x[i];
+    v->ups_mu_2_t_7 = v->ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_x[i] -
+        v->ups_g_in_axes2_x*m->ups_h_group_2_in_axes2_y[i];
 }
 
-INLINE void stage_ups_V_X(size_t w, size_t j, const real *V, values_ups *v)
+INLINE void stage_ups_A_X(size_t w, size_t j, const real *A, values_ups *v)
+{
+    /* (ups-S_ddot) acceleration of the connection point */
+    const real t_ddot_x = A[0*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real t_ddot_z = A[2*w + j];
+    v->ups_S_ddot_in_axes2_x = v->axis_x_ups_axes2_x*t_ddot_x + v->axis_x_ups_axes2_y*t_ddot_y
+        + v->axis_x_ups_axes2_z*t_ddot_z;
+    v->ups_S_ddot_t = v->axis_y_ups_axes2_x*t_ddot_x;
+    v->ups_S_ddot_t_2 = v->axis_y_ups_axes2_y*t_ddot_y;
+    v->ups_S_ddot_t_3 = v->axis_y_ups_axes2_z*t_ddot_z;
+    v->ups_S_ddot_in_axes2_z = v->axis_z_ups_axes2_x*t_ddot_x + v->axis_z_ups_axes2_y*t_ddot_y
+        + v->axis_z_ups_axes2_z*t_ddot_z;
+}
+
+INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_ups *v)
 {
     /* (ups-S_dot) velocity of the connection point */
     const real t_dot_x = V[0*w + j];
     const real t_dot_y = V[1*w + j];
     const real t_dot_z = V[2*w + j];
-    const real ups_S_dot_in_axes2_x = v->axis_x_ups_axes2_x*t_dot_x +
-        v->axis_x_ups_axes2_y*t_dot_y + v->axis_x_ups_axes2_z*t_dot_z;
+    v->ups_S_dot_in_axes2_x = v->axis_x_ups_axes2_x*t_dot_x + v->axis_x_ups_axes2_y*t_dot_y +
+        v->axis_x_ups_axes2_z*t_dot_z;
     /* (ups-qd_1) rate of joint 1 */
-    const real ups_qd_1 = v->inv_ups_root_1*(v->axis_z_ups_axes2_x*t_dot_x +
+    v->ups_qd_1 = v->inv_ups_root_1*(v->axis_z_ups_axes2_x*t_dot_x +
         v->axis_z_ups_axes2_y*t_dot_y + v->axis_z_ups_axes2_z*t_dot_z);
     /* (ups-qd_2) rate of joint 2 */
-    const real ups_qd_2 = v->inv_ups_q_3*(v->axis_y_ups_axes2_x*t_dot_x +
+    v->ups_qd_2 = v->inv_ups_q_3*(v->axis_y_ups_axes2_x*t_dot_x +
         v->axis_y_ups_axes2_y*t_dot_y + v->axis_y_ups_axes2_z*t_dot_z);
     /* (ups-omega_1) angular velocity of link 1 */
-    const real ups_omega_1_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qd_1;
-    const real ups_omega_1_in_axes2_y = -v->ups_c_2*ups_qd_1;
+    const real ups_omega_1_in_axes2_x = v->ups_e_1_in_axes2_x*v->ups_qd_1;
+    const real ups_omega_1_in_axes2_y = -v->ups_c_2*v->ups_qd_1;
     /* (ups-W_2) centripetal tensor of link 2 */
-    const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-    const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-    const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+    v->ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*v->ups_qd_2;
+    v->ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*v->ups_qd_2;
+    const real ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+    const real ups_W_2_t_2 = v->ups_qd_2*v->ups_qd_2;
+    v->ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2;
+    v->ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
     /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-    const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-    const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*v->ups_q_3 -
+    const real ups_bias_t = 2*v->ups_S_dot_in_axes2_x;
+    v->ups_bias_in_axes2_z = 2*v->ups_W_2_in_axes2_xz*v->ups_q_3 -
         ups_bias_t*ups_omega_1_in_axes2_y;
-    v->ups_S_dot_in_axes2_x = ups_S_dot_in_axes2_x;
-    v->ups_qd_1 = ups_qd_1;
-    v->ups_qd_2 = ups_qd_2;
-    v->ups_omega_1_in_axes2_x = ups_omega_1_in_axes2_x;
-    v->ups_omega_1_in_axes2_y = ups_omega_1_in_axes2_y;
-    v->ups_W_2_in_axes2_yz = ups_W_2_in_axes2_yz;
-    v->ups_W_2_in_axes2_xz = ups_W_2_in_axes2_xz;
-    v->ups_W_2_in_axes2_xy = ups_W_2_in_axes2_xy;
-    v->ups_bias_t = ups_bias_t;
-    v->ups_bias_in_axes2_z = ups_bias_in_axes2_z;
+    /* (ups-qdd_2) acceleration of joint 2 */
+    v->ups_qdd_2_t = ups_bias_t*v->ups_qd_2;
+    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+    v->ups_phi_3_t = v->ups_W_2_in_axes2_xx*m->ups_h_3_in_spec2_x[i];
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+    v->ups_mu_2_t_2 = m->ups_J_group_2_in_axes2_yz[i]*(ups_W_2_t - ups_W_2_t_2);
+    v->ups_mu_2_t_3 = m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_t - ups_W_2_t_2);
+    v->ups_mu_2_t_4 = m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_t - ups_W_2_t);
+    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->ups_c_t = m->ups_h_3_in_spec2_z[i]*(ups_W_2_t_2 + ups_mu_2_t);
+    v->ups_c_t_2 = m->ups_h_3_in_spec2_y[i]*(ups_W_2_t + ups_mu_2_t);
+}
+
+INLINE void stage_ups_A_V_X(values_ups *v)
+{
+    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+    const real ups_rel_in_axes2_z = v->ups_S_ddot_in_axes2_z - v->ups_bias_in_axes2_z;
+    /* (ups-qdd_1) acceleration of joint 1 */
+    v->ups_qdd_1 = v->inv_ups_root_1*ups_rel_in_axes2_z;
+    /* (ups-qdd_2) acceleration of joint 2 */
+    v->ups_qdd_2_t_2 = v->inv_ups_q_3*(v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3
+        - v->ups_qdd_2_t);
+    v->ups_qdd_2 = v->ups_qdd_2_t_2 - v->ups_W_2_in_axes2_xy;
+}
+
+INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
+{
+    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real ups_d_alpha_1_in_axes2_xz = v->inv_ups_root_1*v->ups_e_1_in_axes2_x;
+    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+       about its reference point */
+    const real ups_d_phi_3_in_axes2_xy = v->inv_ups_q_3*m->ups_h_3_in_spec2_z[i];
+    const real ups_d_phi_3_in_axes2_yy = v->inv_ups_q_3*m->ups_h_3_in_spec2_x[i];
+    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real ups_d_c_in_axes2_xz = v->inv_ups_q_3*m->ups_h_3_in_spec2_y[i];
+    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+        v->inv_ups_q_3*(m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_q_3*m->ups_J_group_2_in_axes2_zz[i]);
+    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
+        v->inv_ups_q_3*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
+        v->inv_ups_q_3*m->ups_J_group_2_in_axes2_yz[i]);
+    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
+        ups_d_phi_3_in_axes2_yy -
+        v->inv_ups_root_1*(v->ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
+        - m->ups_h_3_in_spec2_z[i] - v->inv_ups_q_3*m->ups_J_group_2_in_axes2_xy[i]) -
+        v->ups_c_2*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz -
+        m->ups_h_3_in_spec2_x[i] - v->inv_ups_q_3*m->ups_J_group_2_in_axes2_yy[i]));
+    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+    const real ups_Q_t_3 = v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_x*ups_Q_t - v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_4 = v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_y*ups_Q_t - v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_5 = v->axis_y_ups_axes2_z*ups_Q_t -
+        v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
+        v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_6 = v->axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
+        v->axis_z_ups_axes2_x*ups_Q_t_2;
+    const real ups_Q_t_7 = v->axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
+        v->axis_z_ups_axes2_y*ups_Q_t_2;
+    const real ups_Q_t_8 = v->axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
+        v->axis_z_ups_axes2_z*ups_Q_t_2;
+    const real ups_Q_t_9 = v->axis_z_ups_axes2_x*ups_Q_t_6 - v->axis_y_ups_axes2_x*ups_Q_t_3;
+    v->ups_Q_xx = -2*ups_Q_t_9;
+    v->ups_Q_xy = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 -
+        v->axis_z_ups_axes2_x*ups_Q_t_7 - v->axis_z_ups_axes2_y*ups_Q_t_6;
+    v->ups_Q_xz = v->axis_y_ups_axes2_z*ups_Q_t_3 - v->axis_y_ups_axes2_x*ups_Q_t_5 -
+        v->axis_z_ups_axes2_x*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_6;
+    const real ups_Q_t_10 = v->axis_z_ups_axes2_y*ups_Q_t_7 - v->axis_y_ups_axes2_y*ups_Q_t_4;
+    v->ups_Q_yy = -2*ups_Q_t_10;
+    v->ups_Q_yz = v->axis_y_ups_axes2_z*ups_Q_t_4 - v->axis_y_ups_axes2_y*ups_Q_t_5 -
+        v->axis_z_ups_axes2_y*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_7;
+    const real ups_Q_t_11 = v->axis_y_ups_axes2_z*ups_Q_t_5 + v->axis_z_ups_axes2_z*ups_Q_t_8;
+    v->ups_Q_zz = -2*ups_Q_t_11;
 }
 
 INLINE void stage_ups_Z_dynamics(const prepared *m, size_t i, values_ups *v)
@@ -1279,121 +1376,95 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t i, values_ups *v)
     const real ups_alpha_2_o_in_axes2_x = v->ups_W_2_in_axes2_yz - ups_alpha_1_o_t;
     const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
     /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real ups_B_2_o_t = v->inv_ups_q_3*v->ups_bias_t*v->ups_qd_2;
+    const real ups_B_2_o_t = v->inv_ups_q_3*v->ups_qdd_2_t;
     const real ups_B_2_o_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy + ups_B_2_o_t;
     const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
     const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
     /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
        */
-    const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
-    const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
-    const real ups_phi_3_o_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t -
-        ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+    const real ups_phi_3_o_in_axes2_x = v->ups_phi_3_t -
+        ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
         ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
-    const real ups_mu_2_o_t_2 = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
-    const real ups_g_in_axes2_x = m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x +
-        v->ups_c_2*ups_mu_2_o_t_2;
-    const real ups_g_in_axes2_y = v->ups_e_1_in_axes2_x*ups_mu_2_o_t_2 -
-        m->ups_acc_3_t_3[i]*v->ups_c_2;
-    const real ups_mu_2_o_in_axes2_x = ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_z[i] -
-        v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_y[i] +
-        m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_o_t - ups_phi_3_o_t_2) -
+    const real ups_mu_2_o_in_axes2_x = v->ups_mu_2_t_2 - v->ups_mu_2_t_5 -
         ups_B_2_o_t*m->ups_J_group_2_in_axes2_xz[i] -
         m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_t +
         ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
         ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
-    const real ups_mu_2_o_in_axes2_y = v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_x[i] -
-        ups_g_in_axes2_x*m->ups_h_group_2_in_axes2_z[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+    const real ups_mu_2_o_in_axes2_y = m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y
+        - v->ups_mu_2_t_6 - v->ups_mu_2_t_3 -
         ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
         ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
         ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_mu_2_o_in_axes2_z = ups_g_in_axes2_x*m->ups_h_group_2_in_axes2_y[i] -
-        ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_x[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) -
+    const real ups_mu_2_o_in_axes2_z = v->ups_mu_2_t_4 - v->ups_mu_2_t_7 -
         ups_B_2_o_t*m->ups_Sigma_2_in_axes2_xx[i] -
         ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
         m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y -
         m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_t;
     /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real ups_c_o_in_axes2_y = ups_B_2_o_t*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2) -
+    const real ups_c_o_in_axes2_y = ups_B_2_o_t*m->ups_h_3_in_spec2_x[i] - v->ups_c_t -
         ups_alpha_1_o_t*m->ups_h_3_in_spec2_y[i] - v->inv_ups_q_3*ups_mu_2_o_in_axes2_z;
-    const real ups_c_o_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) +
+    const real ups_c_o_in_axes2_z = v->ups_c_t_2 +
         ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
         ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
         v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
         v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x);
     /* (ups-U) velocity and gravity terms of the leg force */
-    const real ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
+    v->ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
-    const real ups_U_y = v->axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
+    v->ups_U_y = v->axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_y*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
-    const real ups_U_z = v->axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
+    v->ups_U_z = v->axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_z*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
-    v->ups_U_x = ups_U_x;
-    v->ups_U_y = ups_U_y;
-    v->ups_U_z = ups_U_z;
 }
 
-INLINE void stage_ups_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
-    *A, values_ups *v)
+INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
 {
     /* (ups-S_ddot) acceleration of the connection point */
-    const real t_ddot_x = A[0*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real t_ddot_z = A[2*w + j];
-    const real ups_S_ddot_in_axes2_z = v->axis_z_ups_axes2_x*t_ddot_x +
-        v->axis_z_ups_axes2_y*t_ddot_y + v->axis_z_ups_axes2_z*t_ddot_z;
-    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-    const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_bias_in_axes2_z;
-    /* (ups-qdd_1) acceleration of joint 1 */
-    const real ups_qdd_1 = v->inv_ups_root_1*ups_rel_in_axes2_z;
+    v->ups_S_ddot_in_axes2_y = v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3;
     /* (ups-alpha_1) angular acceleration of link 1 */
-    const real ups_alpha_1_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1;
-    const real ups_alpha_1_in_axes2_y = -v->ups_c_2*ups_qdd_1;
+    const real ups_alpha_1_in_axes2_x = v->ups_e_1_in_axes2_x*v->ups_qdd_1;
+    const real ups_alpha_1_in_axes2_y = -v->ups_c_2*v->ups_qdd_1;
     /* (ups-alpha_2) angular acceleration of link 2 */
     const real ups_alpha_2_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
     const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - v->ups_W_2_in_axes2_xz;
     /* (ups-B_2) acceleration tensor of link 2 */
-    const real ups_B_2_t = v->axis_y_ups_axes2_x*t_ddot_x;
-    const real ups_B_2_t_2 = v->axis_y_ups_axes2_y*t_ddot_y;
-    const real ups_B_2_t_3 = v->axis_y_ups_axes2_z*t_ddot_z;
-    const real ups_B_2_in_axes2_yx = v->inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-        v->ups_bias_t*v->ups_qd_2);
-    const real ups_B_2_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
+    const real ups_B_2_in_axes2_xy = v->ups_W_2_in_axes2_xy - v->ups_qdd_2;
     const real ups_B_2_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
     const real ups_B_2_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
-    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real ups_acc_3_t_4 = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
-    const real ups_g_in_axes2_x = m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x +
-        ups_acc_3_t_4*v->ups_c_2;
-    const real ups_g_in_axes2_y = ups_acc_3_t_4*v->ups_e_1_in_axes2_x -
-        m->ups_acc_3_t_3[i]*v->ups_c_2;
-    const real ups_acc_3_in_axes2_x = v->axis_x_ups_axes2_x*t_ddot_x +
-        v->axis_x_ups_axes2_y*t_ddot_y + v->axis_x_ups_axes2_z*t_ddot_z - ups_g_in_axes2_x;
-    const real ups_acc_3_in_axes2_y = ups_B_2_t - ups_g_in_axes2_y + ups_B_2_t_2 +
-        ups_B_2_t_3;
-    const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_g_in_axes2_z;
+    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+    v->ups_phi_3_in_axes2_x = v->ups_phi_3_t + ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i]
+        - ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
-    v->ups_alpha_1_in_axes2_x = ups_alpha_1_in_axes2_x;
-    v->ups_alpha_1_in_axes2_y = ups_alpha_1_in_axes2_y;
-    v->ups_B_2_in_axes2_yx = ups_B_2_in_axes2_yx;
-    v->ups_B_2_in_axes2_xy = ups_B_2_in_axes2_xy;
-    v->ups_B_2_in_axes2_zx = ups_B_2_in_axes2_zx;
-    v->ups_B_2_in_axes2_zy = ups_B_2_in_axes2_zy;
-    v->ups_g_in_axes2_x = ups_g_in_axes2_x;
-    v->ups_g_in_axes2_y = ups_g_in_axes2_y;
-    v->ups_acc_3_in_axes2_x = ups_acc_3_in_axes2_x;
-    v->ups_acc_3_in_axes2_y = ups_acc_3_in_axes2_y;
-    v->ups_acc_3_in_axes2_z = ups_acc_3_in_axes2_z;
-    v->ups_mu_2_t = ups_mu_2_t;
+    const real ups_mu_2_in_axes2_x = v->ups_mu_2_t_2 - v->ups_mu_2_t_5 -
+        v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*v->ups_qdd_2_t_2 +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_in_axes2_x +
+        ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_in_axes2_y = v->ups_S_ddot_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
+        v->ups_mu_2_t_6 - v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_x[i] - v->ups_mu_2_t_3
+        + m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_in_axes2_y -
+        ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_in_axes2_z = v->ups_S_ddot_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
+        v->ups_mu_2_t_7 + v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_x[i] + v->ups_mu_2_t_4
+        + m->ups_Sigma_2_in_axes2_xx[i]*v->ups_qdd_2_t_2 +
+        m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_in_axes2_y -
+        ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i];
+    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    v->ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] - v->ups_c_t -
+        m->ups_h_3_in_spec2_x[i]*v->ups_qdd_2_t_2 - v->inv_ups_q_3*ups_mu_2_in_axes2_z;
+    v->ups_c_in_axes2_z = v->ups_c_t_2 + ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_in_axes2_y -
+        v->ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
@@ -1404,64 +1475,16 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
-    stage_ups_V_X(w, j, V, &v);
+    stage_ups_V_X(m, w, i, j, V, &v);
+    stage_ups_M_dynamics(m, i, &v);
     stage_ups_Z_dynamics(m, i, &v);
-    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*v.ups_e_1_in_axes2_x;
-    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
-    const real ups_d_phi_3_in_axes2_xy = v.inv_ups_q_3*m->ups_h_3_in_spec2_z[i];
-    const real ups_d_phi_3_in_axes2_yy = v.inv_ups_q_3*m->ups_h_3_in_spec2_x[i];
-    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real ups_d_c_in_axes2_xz = v.inv_ups_q_3*m->ups_h_3_in_spec2_y[i];
-    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-        v.inv_ups_q_3*(m->ups_h_3_in_spec2_x[i] +
-        v.inv_ups_q_3*m->ups_J_group_2_in_axes2_zz[i]);
-    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
-        v.inv_ups_q_3*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
-        v.inv_ups_q_3*m->ups_J_group_2_in_axes2_yz[i]);
-    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
-        ups_d_phi_3_in_axes2_yy -
-        v.inv_ups_root_1*(v.ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
-        - m->ups_h_3_in_spec2_z[i] - v.inv_ups_q_3*m->ups_J_group_2_in_axes2_xy[i]) -
-        v.ups_c_2*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz -
-        m->ups_h_3_in_spec2_x[i] - v.inv_ups_q_3*m->ups_J_group_2_in_axes2_yy[i]));
-    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
-    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-    const real ups_Q_t_3 = v.axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
-        v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
-        v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t -
-        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
-        v.axis_z_ups_axes2_x*ups_Q_t_2;
-    const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
-        v.axis_z_ups_axes2_y*ups_Q_t_2;
-    const real ups_Q_t_8 = v.axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
-        v.axis_z_ups_axes2_z*ups_Q_t_2;
-    const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - v.axis_y_ups_axes2_x*ups_Q_t_3;
-    const real ups_Q_xx = -2*ups_Q_t_9;
-    const real ups_Q_xy = v.axis_y_ups_axes2_x*ups_Q_t_4 + v.axis_y_ups_axes2_y*ups_Q_t_3 -
-        v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
-    const real ups_Q_xz = v.axis_y_ups_axes2_z*ups_Q_t_3 - v.axis_y_ups_axes2_x*ups_Q_t_5 -
-        v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
-    const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - v.axis_y_ups_axes2_y*ups_Q_t_4;
-    const real ups_Q_yy = -2*ups_Q_t_10;
-    const real ups_Q_yz = v.axis_y_ups_axes2_z*ups_Q_t_4 - v.axis_y_ups_axes2_y*ups_Q_t_5 -
-        v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
-    const real ups_Q_t_11 = v.axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
-    const real ups_Q_zz = -2*ups_Q_t_11;
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[0*count + k], add, v.ups_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
     /* (Z_t) translational part of Z */
     gather(&terms[6*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
     gather(&terms[7*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
@@ -1477,7 +1500,7 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void dynamics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1487,7 +1510,7 @@ INLINE void dynamics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
-    *Z, verdict *t)
+    *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -1525,7 +1548,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     real sums[9] = {0};
     real terms_ups[9*LEGS(LEGS_OF_ups)] = {0}, o_ups[5*LEGS(LEGS_OF_ups)] = {0};
@@ -1542,7 +1565,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, verdict *restrict t)
+    real *restrict Z, real *restrict H, status_flags *restrict t)
 {
     real sums[9*LANES];
     real o_ups[5*LANES];
@@ -1566,76 +1589,26 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
-    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real ups_e_1_in_axes2_x = v.ups_S_in_turn1_z*v.ups_w_2_in_axes2_y;
-    const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*ups_e_1_in_axes2_x;
-    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
-    const real ups_d_phi_3_in_axes2_xy = m->ups_h_3_in_spec2_z[i]*v.ups_w_2_in_axes2_y;
-    const real ups_d_phi_3_in_axes2_yy = m->ups_h_3_in_spec2_x[i]*v.ups_w_2_in_axes2_y;
-    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real ups_d_c_in_axes2_xz = m->ups_h_3_in_spec2_y[i]*v.ups_w_2_in_axes2_y;
-    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-        v.ups_w_2_in_axes2_y*(m->ups_h_3_in_spec2_x[i] +
-        m->ups_J_group_2_in_axes2_zz[i]*v.ups_w_2_in_axes2_y);
-    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
-        v.ups_w_2_in_axes2_y*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_w_2_in_axes2_y);
-    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
-        ups_d_phi_3_in_axes2_yy -
-        v.inv_ups_root_1*(ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
-        - m->ups_h_3_in_spec2_z[i] - m->ups_J_group_2_in_axes2_xy[i]*v.ups_w_2_in_axes2_y) -
-        v.ups_root_1*v.ups_w_2_in_axes2_y*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz
-        - m->ups_h_3_in_spec2_x[i] - m->ups_J_group_2_in_axes2_yy[i]*v.ups_w_2_in_axes2_y));
-    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real axis_y_ups_axes2_x = v.axis_z_ups_axes2_y*v.ups_w_3_z -
-        v.axis_z_ups_axes2_z*v.ups_w_3_y;
-    const real axis_y_ups_axes2_y = v.axis_z_ups_axes2_z*v.ups_w_3_x -
-        v.axis_z_ups_axes2_x*v.ups_w_3_z;
-    const real axis_y_ups_axes2_z = v.axis_z_ups_axes2_x*v.ups_w_3_y -
-        v.axis_z_ups_axes2_y*v.ups_w_3_x;
-    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
-    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-    const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
-        v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
-        v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_6 = ups_d_c_in_axes2_xz*v.ups_w_3_x + v.axis_z_ups_axes2_x*ups_Q_t_2;
-    const real ups_Q_t_7 = ups_d_c_in_axes2_xz*v.ups_w_3_y + v.axis_z_ups_axes2_y*ups_Q_t_2;
-    const real ups_Q_t_8 = ups_d_c_in_axes2_xz*v.ups_w_3_z + v.axis_z_ups_axes2_z*ups_Q_t_2;
-    const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
-    const real ups_Q_xx = -2*ups_Q_t_9;
-    const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
-        v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
-    const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
-        v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
-    const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
-    const real ups_Q_yy = -2*ups_Q_t_10;
-    const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
-        v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
-    const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
-    const real ups_Q_zz = -2*ups_Q_t_11;
+    stage_ups_M_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[0*count + k], add, v.ups_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void M_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, verdict *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
+    *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -1660,7 +1633,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
@@ -1676,7 +1649,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     M_after(m, 1, 0, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
     real sums[6*LANES];
     real o_ups[LANES];
@@ -1700,7 +1674,7 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
-    stage_ups_V_X(w, j, V, &v);
+    stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_Z_dynamics(m, i, &v);
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
@@ -1711,12 +1685,13 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void Z_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
+    *t)
 {
     /* (Z_t) */
     const real Z_t_x_of_legs = sums[0*w + k];
@@ -1732,7 +1707,7 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += Z_t_x + (Z_t_y + Z_t_z);
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
     real sums[3] = {0};
     real terms_ups[3*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
@@ -1748,8 +1723,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(m, 1, 0, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
     real sums[3*LANES];
     real o_ups[LANES];
@@ -1774,16 +1749,16 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
     /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.ups_w_3_x;
-    o[1*count + k] = v.ups_w_3_y;
-    o[2*count + k] = v.ups_w_3_z;
-    o[4*count + k] = v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z);
+    o[0*count + k] = v.axis_x_ups_axes2_x;
+    o[1*count + k] = v.axis_x_ups_axes2_y;
+    o[2*count + k] = v.axis_x_ups_axes2_z;
+    o[4*count + k] = v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z);
     o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void H_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1792,7 +1767,7 @@ INLINE void H_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[4*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
@@ -1803,7 +1778,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
     real o_ups[5*LANES];
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -1840,59 +1816,18 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
-    stage_ups_V_X(w, j, V, &v);
-    stage_ups_legs_required(m, w, i, j, A, &v);
-    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
-    const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
-    const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_phi_3_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2)
-        - v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
-        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_t - ups_phi_3_t_2) +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
-    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
-        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
+    stage_ups_A_X(w, j, A, &v);
+    stage_ups_V_X(m, w, i, j, V, &v);
+    stage_ups_A_V_X(&v);
+    stage_ups_legs_required(m, i, &v);
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2) -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
-    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
-        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
-    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y -
-        v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*ups_c_in_axes2_z;
-    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y -
-        v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*ups_c_in_axes2_z;
-    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y -
-        v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*ups_c_in_axes2_z;
+    const real ups_c_x = v.axis_y_ups_axes2_x*v.ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_x*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*v.ups_c_in_axes2_z;
+    const real ups_c_y = v.axis_y_ups_axes2_y*v.ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_y*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*v.ups_c_in_axes2_z;
+    const real ups_c_z = v.axis_y_ups_axes2_z*v.ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_z*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*v.ups_c_in_axes2_z;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
@@ -1907,7 +1842,7 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void required_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, verdict *t)
+    *o, real *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -1934,7 +1869,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, verdict *t)
+    *required, real *H, status_flags *t)
 {
     real s[3] = {0}, sums[3] = {0};
     real terms_ups[3*LEGS(LEGS_OF_ups)] = {0}, o_ups[4*LEGS(LEGS_OF_ups)] = {0};
@@ -1952,7 +1887,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, verdict *restrict t)
+    real *restrict required, real *restrict H, status_flags *restrict t)
 {
     real s[3*LANES], sums[3*LANES];
     real o_ups[4*LANES];
@@ -1980,10 +1915,9 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
     /* (ups-q_1) displacement of joint 1 */
-    const real ups_q_1 = angle(v.inv_ups_root_1*v.ups_S_in_turn1_y,
-        v.inv_ups_root_1*v.ups_S_in_turn1_x);
+    const real ups_q_1 = angle(v.ups_s_1, v.ups_c_1);
     /* (ups-q_2) displacement of joint 2 */
-    const real ups_q_2 = angle(-v.inv_ups_q_3*v.ups_S_in_turn1_z, v.inv_ups_q_3*v.ups_root_1);
+    const real ups_q_2 = angle(-v.ups_e_1_in_axes2_x, v.ups_c_2);
     /* (ups-q_1) */
     o[0*count + k] = ups_q_1;
     /* (ups-q_2) */
@@ -1996,7 +1930,7 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
 }
 
 INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[3*i*w + k] = o[0*count + at];
     q[(1 + 3*i)*w + k] = o[1*count + at];
@@ -2005,7 +1939,7 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
@@ -2017,7 +1951,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
     real o_ups[5*LANES];
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2036,31 +1970,21 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j
 {
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
-    stage_ups_V_X(w, j, V, &v);
-    /* (ups-qd_2) rate of joint 2 */
-    const real t_dot_x = V[0*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real t_dot_z = V[2*w + j];
-    const real ups_qd_2 = v.inv_ups_q_3*(t_dot_x*(v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_y -
-        v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_z) +
-        t_dot_y*(v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_z -
-        v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_x) +
-        t_dot_z*(v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_x -
-        v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_y));
+    stage_ups_V_X(m, w, i, j, V, &v);
     /* (ups-qd_1) rate of joint 1 */
     o[0*count + k] = v.ups_qd_1;
-    /* (ups-qd_2) */
-    o[1*count + k] = ups_qd_2;
+    /* (ups-qd_2) rate of joint 2 */
+    o[1*count + k] = v.ups_qd_2;
     /* (ups-qd_3) rate of joint 3 */
     o[2*count + k] = v.ups_S_dot_in_axes2_x;
-    o[4*count + k] = v.ups_qd_1 + (ups_qd_2 + v.ups_S_dot_in_axes2_x);
+    o[4*count + k] = v.ups_qd_1 + (v.ups_qd_2 + v.ups_S_dot_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[3*i*w + k] = o[0*count + at];
     qd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -2069,7 +1993,8 @@ INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
@@ -2081,7 +2006,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
     real o_ups[5*LANES];
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2100,42 +2025,25 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
 {
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
-    stage_ups_V_X(w, j, V, &v);
-    /* (ups-omega_1) angular velocity of link 1 */
-    const real ups_omega_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z*v.ups_qd_1;
-    const real ups_omega_1_in_axes2_y = -v.inv_ups_q_3*v.ups_qd_1*v.ups_root_1;
-    /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-    const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*v.ups_q_3*v.ups_qd_2 -
-        v.ups_bias_t*ups_omega_1_in_axes2_y;
+    stage_ups_A_X(w, j, A, &v);
+    stage_ups_V_X(m, w, i, j, V, &v);
+    stage_ups_A_V_X(&v);
     /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-    const real t_ddot_x = A[0*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real t_ddot_z = A[2*w + j];
-    const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*t_ddot_x +
-        v.axis_x_ups_axes2_y*t_ddot_y + v.axis_x_ups_axes2_z*t_ddot_z -
-        v.ups_q_3*(-v.ups_qd_2*v.ups_qd_2 - ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y);
-    const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*t_ddot_x +
-        v.axis_z_ups_axes2_y*t_ddot_y + v.axis_z_ups_axes2_z*t_ddot_z - ups_bias_in_axes2_z;
+    const real ups_rel_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_W_2_in_axes2_xx*v.ups_q_3;
     /* (ups-qdd_1) acceleration of joint 1 */
-    const real ups_qdd_1 = v.inv_ups_root_1*ups_rel_in_axes2_z;
+    o[0*count + k] = v.ups_qdd_1;
     /* (ups-qdd_2) acceleration of joint 2 */
-    const real ups_qdd_2 = v.inv_ups_q_3*(v.axis_y_ups_axes2_x*t_ddot_x +
-        v.axis_y_ups_axes2_y*t_ddot_y + v.axis_y_ups_axes2_z*t_ddot_z -
-        v.ups_bias_t*v.ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-    /* (ups-qdd_1) */
-    o[0*count + k] = ups_qdd_1;
-    /* (ups-qdd_2) */
-    o[1*count + k] = ups_qdd_2;
+    o[1*count + k] = v.ups_qdd_2;
     /* (ups-qdd_3) acceleration of joint 3 */
     o[2*count + k] = ups_rel_in_axes2_x;
-    o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
+    o[4*count + k] = v.ups_qdd_1 + (v.ups_qdd_2 + ups_rel_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[3*i*w + k] = o[0*count + at];
     qdd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -2145,7 +2053,7 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
@@ -2157,7 +2065,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
     real o_ups[5*LANES];
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2176,57 +2084,21 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
 {
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
-    stage_ups_V_X(w, j, V, &v);
-    stage_ups_legs_required(m, w, i, j, A, &v);
-    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
-    const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        m->ups_J_group_2_in_axes2_yz[i]*(ups_mu_2_t_2 - ups_mu_2_t_3) +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
-    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
-        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
-    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-       point */
-    const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3) -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
-    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
-        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
+    stage_ups_A_X(w, j, A, &v);
+    stage_ups_V_X(m, w, i, j, V, &v);
+    stage_ups_A_V_X(&v);
+    stage_ups_legs_required(m, i, &v);
+    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real ups_acc_3_in_axes2_x = v.ups_S_ddot_in_axes2_x - v.ups_g_in_axes2_x;
+    const real ups_acc_3_in_axes2_y = v.ups_S_ddot_in_axes2_y - v.ups_g_in_axes2_y;
+    const real ups_acc_3_in_axes2_z = v.ups_S_ddot_in_axes2_z - v.ups_g_in_axes2_z;
     /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
-    const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] - m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2
-        - ups_mu_2_t_3) - v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
-    const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
-        v.ups_acc_3_in_axes2_y*m->ups_link3_mass[i];
-    const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
-        v.ups_acc_3_in_axes2_z*m->ups_link3_mass[i];
+    const real ups_c_true_in_axes2_x = -ups_acc_3_in_axes2_x*m->ups_link3_mass[i] -
+        v.ups_phi_3_in_axes2_x;
+    const real ups_c_true_in_axes2_y = v.ups_c_in_axes2_y -
+        ups_acc_3_in_axes2_y*m->ups_link3_mass[i];
+    const real ups_c_true_in_axes2_z = v.ups_c_in_axes2_z -
+        ups_acc_3_in_axes2_z*m->ups_link3_mass[i];
     const real ups_c_true_x = v.axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
         v.axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
         v.axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
@@ -2250,7 +2122,7 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, verdict *t)
+    real *leg_force, real *actuator, status_flags *t)
 {
     leg_force[3*i*w + k] = o[0*count + at];
     leg_force[(3*i + 1)*w + k] = o[1*count + at];
@@ -2262,7 +2134,7 @@ INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, verdict *t)
+    *leg_force, real *actuator, status_flags *t)
 {
     real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
@@ -2292,27 +2164,23 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
     /* (potential) */
-    const real ups_potential_t_4 = m->ups_acc_3_t[i]*v.ups_c_1 +
-        m->ups_acc_3_t_2[i]*v.ups_s_1;
-    const real ups_potential_t_5 = v.ups_c_1*m->ups_potential_t[i] +
+    const real ups_potential_t_4 = v.ups_c_1*m->ups_potential_t[i] +
         m->ups_potential_t_2[i]*v.ups_s_1;
-    const real ups_potential_t_6 = (v.ups_e_1_in_axes2_x*ups_potential_t_4 -
-        m->ups_acc_3_t_3[i]*v.ups_c_2)*(m->ups_h_2_in_spec2_z[i] + m->ups_h_3_in_spec2_z[i] -
-        m->ups_link2_mass[i]*(v.ups_e_1_in_axes2_x*ups_potential_t_5 -
-        v.ups_c_2*m->ups_potential_t_3[i])) - (m->ups_acc_3_t_2[i]*v.ups_c_1 -
-        m->ups_acc_3_t[i]*v.ups_s_1)*(m->ups_h_2_in_spec2_y[i] + m->ups_h_3_in_spec2_y[i] +
-        m->ups_link2_mass[i]*(v.ups_c_1*m->ups_potential_t_2[i] -
-        m->ups_potential_t[i]*v.ups_s_1)) - (m->ups_acc_3_t_3[i]*v.ups_e_1_in_axes2_x +
-        v.ups_c_2*ups_potential_t_4)*(m->ups_h_2_in_spec2_x[i] + m->ups_h_3_in_spec2_x[i] +
-        m->ups_link2_mass[i]*(v.ups_c_2*ups_potential_t_5 +
+    const real ups_potential_t_5 = v.ups_g_in_axes2_y*(m->ups_h_2_in_spec2_z[i] +
+        m->ups_h_3_in_spec2_z[i] -
+        m->ups_link2_mass[i]*(v.ups_e_1_in_axes2_x*ups_potential_t_4 -
+        v.ups_c_2*m->ups_potential_t_3[i])) - v.ups_g_in_axes2_z*(m->ups_h_2_in_spec2_y[i] +
+        m->ups_h_3_in_spec2_y[i] + m->ups_link2_mass[i]*(v.ups_c_1*m->ups_potential_t_2[i] -
+        m->ups_potential_t[i]*v.ups_s_1)) - v.ups_g_in_axes2_x*(m->ups_h_2_in_spec2_x[i] +
+        m->ups_h_3_in_spec2_x[i] + m->ups_link2_mass[i]*(v.ups_c_2*ups_potential_t_4 +
         v.ups_e_1_in_axes2_x*m->ups_potential_t_3[i]));
     /* (potential) */
-    gather(&terms[0*count + k], add, ups_potential_t_6);  /* potential_of_legs */
+    gather(&terms[0*count + k], add, ups_potential_t_5);  /* potential_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
 }
 
-INLINE void potential_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -2327,7 +2195,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
     real s[1] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
@@ -2345,7 +2213,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, status_flags
+    *t)
 {
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
@@ -2374,19 +2243,20 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
     /* (spread) */
     gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
     /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.ups_w_3_x;
-    o[1*count + k] = v.ups_w_3_y;
-    o[2*count + k] = v.ups_w_3_z;
+    o[0*count + k] = v.axis_x_ups_axes2_x;
+    o[1*count + k] = v.axis_x_ups_axes2_y;
+    o[2*count + k] = v.axis_x_ups_axes2_z;
     /* (ups-G) */
     o[3*count + k] = ups_least_pivots;
-    o[5*count + k] = (v.ups_w_3_x + v.ups_w_3_y) + (v.ups_w_3_z + ups_least_pivots);
+    o[5*count + k] = (v.axis_x_ups_axes2_x + v.axis_x_ups_axes2_y) + (v.axis_x_ups_axes2_z +
+        ups_least_pivots);
     o[4*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void condition_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *pivots, verdict *t)
+    *o, real *H, real *pivots, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2397,7 +2267,7 @@ INLINE void condition_place_ups(size_t w, size_t i, size_t k, size_t at, size_t 
 }
 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
-    *lengths, verdict *t)
+    *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_ups = sums[0*w + k];
@@ -2408,7 +2278,7 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
-    real *reach, verdict *t)
+    real *reach, status_flags *t)
 {
     real sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[6*LEGS(LEGS_OF_ups)] = {0};
@@ -2430,196 +2300,179 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int tripod_3ups_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int tripod_3ups_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int tripod_3ups_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int tripod_3ups_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int tripod_3ups_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int tripod_3ups_joint_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int tripod_3ups_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -2678,14 +2531,9 @@ int tripod_3ups_inverse_dynamics(const prepared *m, const real *X, const real *V
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -2700,7 +2548,7 @@ int tripod_3ups_inverse_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    return settled(&why, NU, tau_out);
+    return final_status(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -2708,7 +2556,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2719,8 +2567,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_3(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
 }
 
 static const size_t order_A[] = {0, 1, 2};
@@ -2732,14 +2580,9 @@ int tripod_3ups_forward_dynamics(const prepared *m, const real *X, const real *V
     static const real no_wrench[NW] = {0};
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
         subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -2758,7 +2601,7 @@ int tripod_3ups_forward_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    return settled(&why, NV, A_out);
+    return final_status(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2767,7 +2610,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
         A[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2782,8 +2625,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = add_1[i] - Z[i];
     }
     eliminate_3(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
 }
 
 int tripod_3ups_complete_acceleration(const prepared *m, const real *X, const real *V, const real
@@ -2793,13 +2636,11 @@ int tripod_3ups_complete_acceleration(const prepared *m, const real *X, const re
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int tripod_3ups_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -2807,49 +2648,27 @@ int tripod_3ups_leg_reactions(const prepared *m, const real *X, const real *V, c
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
-        unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0},
-        work[NV*PADDED(NV)];
-    verdict why;
+    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, &why);
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - wrench[i];
-    }
-    eliminate_3(1, NV, order_tau, sizes_tau, H, subtract_1, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NV, 1, H, work);
-        solve_apart(NV, subtract_1, work, solve_1, why.singular);
-        check(NV, 1, solve_1, why.overflow);
-    }
+    flag_status(tripod_3ups_inverse_dynamics(m, X, V, A, wrench, solve_1), &why);
     legs_run(m, X, V, A, leg_force, actuator, &why);
     for (size_t i = 0; i < NL*NL; ++i) {
         forces[i] = leg_force[i];
     }
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
-    check(NL*NL, 1, forces, why.overflow);
-    copy(NL*NL, forces, forces_out);
-    return settled(&why, NL*NL, forces_out);
+    return finished(NL*NL, forces, forces_out, &why);
 }
 
 int tripod_3ups_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -2858,16 +2677,16 @@ int tripod_3ups_energy(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int tripod_3ups_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, reach[NL] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, legs_out, reach, &why);
     singular_values(NV, NU, H, sigma);
     if (!is_finite(why.total[0])) {
@@ -2877,8 +2696,8 @@ int tripod_3ups_condition(const prepared *m, const real *X, real *sigma_out, rea
     check(2, 1, lengths, why.overflow);
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int tripod_3ups_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -2886,9 +2705,9 @@ int tripod_3ups_manipulability(const prepared *m, const real *X, real *measure_o
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
         {0}, measure[1] = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
     singular_values(NV, NU, H, singular_values_1);
     spread(NV, singular_values_1, measure, isotropy);
@@ -2899,8 +2718,8 @@ int tripod_3ups_manipulability(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int tripod_3ups_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -2908,9 +2727,9 @@ int tripod_3ups_singularity_distance(const prepared *m, const real *X, real *act
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
         {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, lengths, pivots, reach, &why);
     singular_values(NV, NU, H, singular_values_1);
     spread(NV, singular_values_1, spread_1, actuators);
@@ -2921,52 +2740,47 @@ int tripod_3ups_singularity_distance(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[3] = {0}, gap[NU] = {0};
-    verdict why;
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[3] = {0}, residual[NU] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(3, 1, tripod_3ups_ACTUATED, q, q_of_inverse_kinematics_from_2);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_2[i];
+        residual[i] = q_actuated[i] - q_of_inverse_kinematics_from_2[i];
     }
-    check(NU, 1, gap, why.overflow);
-    copy(NU, gap, gap_out);
-    return settled(&why, NU, gap_out);
+    return finished(NU, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NU, slope_out);
+    return final_status(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = NU, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -2978,21 +2792,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -3006,17 +2820,11 @@ int tripod_3ups_forward_kinematics(const prepared *m, const real *q_actuated, co
     *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
 int tripod_3ups_dissipation(const prepared *m, const real *X, const real *V, real
@@ -3025,183 +2833,134 @@ int tripod_3ups_dissipation(const prepared *m, const real *X, const real *V, rea
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int tripod_3ups_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int tripod_3ups_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int tripod_3ups_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int tripod_3ups_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, tripod_3ups_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int tripod_3ups_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, tripod_3ups_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int tripod_3ups_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, tripod_3ups_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int tripod_3ups_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int tripod_3ups_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
+    check_two(NQ, X, NV, step, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int tripod_3ups_difference(const real *X0, const real *X1, real *step_out)
 {
     real step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
+    check_two(NQ, X0, NQ, X1, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         step[i] = X1[i] - X0[i];
     }
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int tripod_3ups_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real subtract_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
     for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
@@ -3211,9 +2970,7 @@ int tripod_3ups_interpolate(const real *X0, const real *X1, const real *s, real 
     for (size_t i = 0; i < NQ; ++i) {
         X[i] = X0[i] + scale_1[i];
     }
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

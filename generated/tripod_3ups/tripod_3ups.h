@@ -176,7 +176,7 @@ size_t tripod_3ups_dynamics_batch(const tripod_3ups_model *model, size_t n, cons
     *X, const tripod_3ups_real *V, tripod_3ups_real *M, tripod_3ups_real *Z, tripod_3ups_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 387 mul, 297 add, 6 div, 6 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 384 mul, 291 add, 6 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int tripod_3ups_inverse_dynamics(const tripod_3ups_model *model, const tripod_3ups_real *X, const
@@ -207,7 +207,7 @@ size_t tripod_3ups_complete_acceleration_batch(const tripod_3ups_model *model, s
     tripod_3ups_real *wrench, tripod_3ups_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 393 mul, 291 add, 6 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 390 mul, 294 add, 6 div, 6 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int tripod_3ups_leg_reactions(const tripod_3ups_model *model, const tripod_3ups_real *X, const
     tripod_3ups_real *V, const tripod_3ups_real *A, const tripod_3ups_real *wrench,

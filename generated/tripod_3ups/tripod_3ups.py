@@ -673,8 +673,8 @@ def _prepare(p):
                     ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
                     ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
                     ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
@@ -725,9 +725,10 @@ def _prepare(p):
                     ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
                     ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
                     ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link3_mass,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
+                    ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
                 ),
             ),
         ),
@@ -1411,11 +1412,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1608,8 +1609,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1617,7 +1618,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1625,11 +1626,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1718,6 +1719,8 @@ def _run_dynamics(m, X, V):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
@@ -1748,18 +1751,22 @@ def _run_dynamics(m, X, V):
             axis_y_ups_axes2_z*t_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
         ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
         ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
         ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
         # (ups-qdd_1_o) remainder of: acceleration of joint 1
         ups_qdd_1_o_t = inv_ups_root_1*ups_bias_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
         ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_e_1_in_axes2_x
         # (ups-alpha_1_o) remainder of: angular acceleration of link 1
@@ -1769,49 +1776,59 @@ def _run_dynamics(m, X, V):
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz - ups_alpha_1_o_t
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
-        ups_B_2_o_t = inv_ups_q_3*ups_bias_t*ups_qd_2
+        ups_B_2_o_t = inv_ups_q_3*ups_qdd_2_t
         ups_B_2_o_in_axes2_xy = ups_B_2_o_t + 2.0*ups_W_2_in_axes2_xy
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        # (ups-phi_3) inertia force of link 3 from its turning about its reference point
+        ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
         ups_d_phi_3_in_axes2_xy = inv_ups_q_3*ups_h_3_in_spec2_z
         ups_d_phi_3_in_axes2_yy = inv_ups_q_3*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
-        ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
-        ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
         ups_phi_3_o_in_axes2_x = (
-        ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
-            ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        ups_phi_3_t + ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        )
+        # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_t_2 = ups_J_group_2_in_axes2_yz*(ups_W_2_t - ups_W_2_t_2)
+        ups_mu_2_t_3 = ups_J_group_2_in_axes2_xz*(ups_mu_2_t - ups_W_2_t_2)
+        ups_mu_2_t_4 = ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_W_2_t)
+        ups_mu_2_t_5 = (
+        ups_g_in_axes2_z*ups_h_group_2_in_axes2_y - ups_g_in_axes2_y*ups_h_group_2_in_axes2_z
+        )
+        ups_mu_2_t_6 = (
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_z - ups_g_in_axes2_z*ups_h_group_2_in_axes2_x
+        )
+        ups_mu_2_t_7 = (
+        ups_g_in_axes2_y*ups_h_group_2_in_axes2_x - ups_g_in_axes2_x*ups_h_group_2_in_axes2_y
         )
         # (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
-        ups_mu_2_o_t_2 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_c_2*ups_mu_2_o_t_2
-        ups_g_in_axes2_y = ups_e_1_in_axes2_x*ups_mu_2_o_t_2 - ups_acc_3_t_3*ups_c_2
         ups_mu_2_o_in_axes2_x = (
-        ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t -
-            ups_phi_3_o_t_2) + ups_g_in_axes2_y*ups_h_group_2_in_axes2_z -
+        ups_mu_2_t_2 + ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy - ups_mu_2_t_5 -
             ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_B_2_o_t*ups_J_group_2_in_axes2_xz - ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_t -
-            ups_g_in_axes2_z*ups_h_group_2_in_axes2_y
+            ups_B_2_o_t*ups_J_group_2_in_axes2_xz - ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_t
         )
         ups_mu_2_o_in_axes2_y = (
         ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-            ups_g_in_axes2_z*ups_h_group_2_in_axes2_x -
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y - ups_mu_2_t_3 - ups_mu_2_t_6 -
             ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-            ups_g_in_axes2_x*ups_h_group_2_in_axes2_z
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx
         )
         ups_mu_2_o_in_axes2_z = (
-        ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
-            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-            ups_g_in_axes2_x*ups_h_group_2_in_axes2_y -
+        ups_mu_2_t_4 + ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y - ups_mu_2_t_7 -
             ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_B_2_o_t*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_t - ups_g_in_axes2_y*ups_h_group_2_in_axes2_x
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_t
         )
+        # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_t = ups_h_3_in_spec2_z*(ups_W_2_t_2 + ups_mu_2_t)
+        ups_c_t_2 = ups_h_3_in_spec2_y*(ups_W_2_t + ups_mu_2_t)
         # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         ups_d_c_in_axes2_xz = inv_ups_q_3*ups_h_3_in_spec2_y
         ups_d_c_in_axes2_yy = (
@@ -1832,14 +1849,13 @@ def _run_dynamics(m, X, V):
         )
         # (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
-        ups_B_2_o_t*ups_h_3_in_spec2_x - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
-            ups_alpha_1_o_t*ups_h_3_in_spec2_y - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
-            ups_phi_3_o_t_2)
+        ups_B_2_o_t*ups_h_3_in_spec2_x - ups_c_t - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
+            ups_alpha_1_o_t*ups_h_3_in_spec2_y
         )
         ups_c_o_in_axes2_z = (
-        inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x)
-            + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
-            ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
+        ups_c_t_2 + inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y -
+            ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
@@ -1984,60 +2000,70 @@ def _run_M(m, X):
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-w_2) reciprocal vector 2
-        ups_w_2_in_axes2_y = 1.0/ups_q_3
-        # (ups-w_3) reciprocal vector 3
-        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
-        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
-        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        ups_e_1_in_axes2_x = ups_S_in_turn1_z*ups_w_2_in_axes2_y
         ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_e_1_in_axes2_x
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_d_phi_3_in_axes2_xy = ups_h_3_in_spec2_z*ups_w_2_in_axes2_y
-        ups_d_phi_3_in_axes2_yy = ups_h_3_in_spec2_x*ups_w_2_in_axes2_y
+        ups_d_phi_3_in_axes2_xy = inv_ups_q_3*ups_h_3_in_spec2_z
+        ups_d_phi_3_in_axes2_yy = inv_ups_q_3*ups_h_3_in_spec2_x
         # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_d_c_in_axes2_xz = ups_h_3_in_spec2_y*ups_w_2_in_axes2_y
+        ups_d_c_in_axes2_xz = inv_ups_q_3*ups_h_3_in_spec2_y
         ups_d_c_in_axes2_yy = (
-        -ups_d_phi_3_in_axes2_yy - ups_w_2_in_axes2_y*(ups_h_3_in_spec2_x +
-            ups_J_group_2_in_axes2_zz*ups_w_2_in_axes2_y)
+        -ups_d_phi_3_in_axes2_yy - inv_ups_q_3*(ups_h_3_in_spec2_x +
+            inv_ups_q_3*ups_J_group_2_in_axes2_zz)
         )
         ups_d_c_in_axes2_yz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            ups_J_group_2_in_axes2_yz*ups_w_2_in_axes2_y)
+            inv_ups_q_3*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_q_3*ups_J_group_2_in_axes2_yz)
         )
         ups_d_c_in_axes2_zz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z - ups_d_phi_3_in_axes2_yy -
             inv_ups_root_1*(ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
-            - ups_h_3_in_spec2_z - ups_J_group_2_in_axes2_xy*ups_w_2_in_axes2_y) -
-            ups_root_1*ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_x - ups_J_group_2_in_axes2_yy*ups_w_2_in_axes2_y))
+            - ups_h_3_in_spec2_z - inv_ups_q_3*ups_J_group_2_in_axes2_xy) -
+            ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_x -
+            inv_ups_q_3*ups_J_group_2_in_axes2_yy))
         )
         # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
-        axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z - axis_z_ups_axes2_z*ups_w_3_y
-        axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x - axis_z_ups_axes2_x*ups_w_3_z
-        axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y - axis_z_ups_axes2_y*ups_w_3_x
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
         ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        ups_d_phi_3_in_axes2_xy*ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
             axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
         )
         ups_Q_t_4 = (
-        ups_d_phi_3_in_axes2_xy*ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
             axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
         )
         ups_Q_t_5 = (
         axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-            ups_d_phi_3_in_axes2_xy*ups_w_3_z
+            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
         )
-        ups_Q_t_6 = axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_x
-        ups_Q_t_7 = axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_y
-        ups_Q_t_8 = axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_z
+        ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
+        ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
+        ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
         ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
         ups_Q_xx = -2.0*ups_Q_t_9
         ups_Q_xy = (
@@ -2146,6 +2172,8 @@ def _run_Z(m, X, V):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
@@ -2176,18 +2204,22 @@ def _run_Z(m, X, V):
             axis_y_ups_axes2_z*t_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
         ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
         ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
         ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
         # (ups-qdd_1_o) remainder of: acceleration of joint 1
         ups_qdd_1_o_t = inv_ups_root_1*ups_bias_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
         # (ups-alpha_1_o) remainder of: angular acceleration of link 1
         ups_alpha_1_o_t = ups_e_1_in_axes2_x*ups_qdd_1_o_t
         ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o_t
@@ -2195,56 +2227,65 @@ def _run_Z(m, X, V):
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz - ups_alpha_1_o_t
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
-        ups_B_2_o_t = inv_ups_q_3*ups_bias_t*ups_qd_2
+        ups_B_2_o_t = inv_ups_q_3*ups_qdd_2_t
         ups_B_2_o_in_axes2_xy = ups_B_2_o_t + 2.0*ups_W_2_in_axes2_xy
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        # (ups-phi_3) inertia force of link 3 from its turning about its reference point
+        ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
-        ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
-        ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
         ups_phi_3_o_in_axes2_x = (
-        ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
-            ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        ups_phi_3_t + ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        )
+        # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_t_2 = ups_J_group_2_in_axes2_yz*(ups_W_2_t - ups_W_2_t_2)
+        ups_mu_2_t_3 = ups_J_group_2_in_axes2_xz*(ups_mu_2_t - ups_W_2_t_2)
+        ups_mu_2_t_4 = ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_W_2_t)
+        ups_mu_2_t_5 = (
+        ups_g_in_axes2_z*ups_h_group_2_in_axes2_y - ups_g_in_axes2_y*ups_h_group_2_in_axes2_z
+        )
+        ups_mu_2_t_6 = (
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_z - ups_g_in_axes2_z*ups_h_group_2_in_axes2_x
+        )
+        ups_mu_2_t_7 = (
+        ups_g_in_axes2_y*ups_h_group_2_in_axes2_x - ups_g_in_axes2_x*ups_h_group_2_in_axes2_y
         )
         # (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
-        ups_mu_2_o_t_2 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_c_2*ups_mu_2_o_t_2
-        ups_g_in_axes2_y = ups_e_1_in_axes2_x*ups_mu_2_o_t_2 - ups_acc_3_t_3*ups_c_2
         ups_mu_2_o_in_axes2_x = (
-        ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t -
-            ups_phi_3_o_t_2) + ups_g_in_axes2_y*ups_h_group_2_in_axes2_z -
+        ups_mu_2_t_2 + ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy - ups_mu_2_t_5 -
             ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_B_2_o_t*ups_J_group_2_in_axes2_xz - ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_t -
-            ups_g_in_axes2_z*ups_h_group_2_in_axes2_y
+            ups_B_2_o_t*ups_J_group_2_in_axes2_xz - ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_t
         )
         ups_mu_2_o_in_axes2_y = (
         ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-            ups_g_in_axes2_z*ups_h_group_2_in_axes2_x -
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y - ups_mu_2_t_3 - ups_mu_2_t_6 -
             ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-            ups_g_in_axes2_x*ups_h_group_2_in_axes2_z
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx
         )
         ups_mu_2_o_in_axes2_z = (
-        ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
-            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-            ups_g_in_axes2_x*ups_h_group_2_in_axes2_y -
+        ups_mu_2_t_4 + ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y - ups_mu_2_t_7 -
             ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_B_2_o_t*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_t - ups_g_in_axes2_y*ups_h_group_2_in_axes2_x
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_t
         )
+        # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_t = ups_h_3_in_spec2_z*(ups_W_2_t_2 + ups_mu_2_t)
+        ups_c_t_2 = ups_h_3_in_spec2_y*(ups_W_2_t + ups_mu_2_t)
         # (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
-        ups_B_2_o_t*ups_h_3_in_spec2_x - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
-            ups_alpha_1_o_t*ups_h_3_in_spec2_y - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
-            ups_phi_3_o_t_2)
+        ups_B_2_o_t*ups_h_3_in_spec2_x - ups_c_t - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
+            ups_alpha_1_o_t*ups_h_3_in_spec2_y
         )
         ups_c_o_in_axes2_z = (
-        inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x)
-            + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
-            ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
+        ups_c_t_2 + inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y -
+            ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-U) velocity and gravity terms of the leg force
         ups_U_x = (
@@ -2317,24 +2358,24 @@ def _run_H(m, X):
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-w_2) reciprocal vector 2
-        ups_w_2_in_axes2_y = 1.0/ups_q_3
-        # (ups-w_3) reciprocal vector 3
-        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
-        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
-        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_q_3 = 1.0/ups_q_3
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-w_3) reciprocal vector 3
-        out_H[_H_ups[0][leg]] = ups_w_3_x
-        out_H[_H_ups[1][leg]] = ups_w_3_y
-        out_H[_H_ups[2][leg]] = ups_w_3_z
+        out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
+        out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
+        out_H[_H_ups[2][leg]] = axis_x_ups_axes2_z
     return ok, (out_H,)
 
 
-# required: 387 mul, 297 add, 6 div, 6 sqrt, 0 trig
+# required: 384 mul, 291 add, 6 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -2379,9 +2420,10 @@ def _run_required(m, X, V, A):
             ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
             ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
             ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
+            ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
@@ -2410,6 +2452,8 @@ def _run_required(m, X, V, A):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
@@ -2440,14 +2484,23 @@ def _run_required(m, X, V, A):
             axis_y_ups_axes2_z*t_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
         ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
         ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-S_ddot) acceleration of the connection point
+        ups_S_ddot_in_axes2_x = (
+        axis_x_ups_axes2_x*t_ddot_x + axis_x_ups_axes2_y*t_ddot_y + axis_x_ups_axes2_z*t_ddot_z
+        )
+        ups_S_ddot_t = axis_y_ups_axes2_x*t_ddot_x
+        ups_S_ddot_t_2 = axis_y_ups_axes2_y*t_ddot_y
+        ups_S_ddot_t_3 = axis_y_ups_axes2_z*t_ddot_z
+        ups_S_ddot_in_axes2_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3
         ups_S_ddot_in_axes2_z = (
         axis_z_ups_axes2_x*t_ddot_x + axis_z_ups_axes2_y*t_ddot_y + axis_z_ups_axes2_z*t_ddot_z
         )
@@ -2458,6 +2511,10 @@ def _run_required(m, X, V, A):
         ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
         ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
+        ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
+        ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
         # (ups-alpha_1) angular acceleration of link 1
         ups_alpha_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1
         ups_alpha_1_in_axes2_y = -ups_c_2*ups_qdd_1
@@ -2465,13 +2522,7 @@ def _run_required(m, X, V, A):
         ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
         ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2) acceleration tensor of link 2
-        ups_B_2_t = axis_y_ups_axes2_x*t_ddot_x
-        ups_B_2_t_2 = axis_y_ups_axes2_y*t_ddot_y
-        ups_B_2_t_3 = axis_y_ups_axes2_z*t_ddot_z
-        ups_B_2_in_axes2_yx = (
-        inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
+        ups_B_2_in_axes2_xy = ups_W_2_in_axes2_xy - ups_qdd_2
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
@@ -2479,56 +2530,57 @@ def _run_required(m, X, V, A):
         ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
         ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
         ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
-        ups_acc_3_in_axes2_x = (
-        axis_x_ups_axes2_x*t_ddot_x + axis_x_ups_axes2_y*t_ddot_y + axis_x_ups_axes2_z*t_ddot_z -
-            ups_g_in_axes2_x
-        )
-        ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_g_in_axes2_y
-        ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
-        ups_phi_3_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
-        ups_phi_3_t_2 = ups_qd_2*ups_qd_2
+        ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         ups_phi_3_in_axes2_x = (
-        ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_t -
-            ups_phi_3_t_2) - ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z
+        ups_phi_3_t + ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z
         )
         # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
         ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_t_2 = ups_J_group_2_in_axes2_yz*(ups_W_2_t - ups_W_2_t_2)
+        ups_mu_2_t_3 = ups_J_group_2_in_axes2_xz*(ups_mu_2_t - ups_W_2_t_2)
+        ups_mu_2_t_4 = ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_W_2_t)
+        ups_mu_2_t_5 = (
+        ups_g_in_axes2_z*ups_h_group_2_in_axes2_y - ups_g_in_axes2_y*ups_h_group_2_in_axes2_z
+        )
+        ups_mu_2_t_6 = (
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_z - ups_g_in_axes2_z*ups_h_group_2_in_axes2_x
+        )
+        ups_mu_2_t_7 = (
+        ups_g_in_axes2_y*ups_h_group_2_in_axes2_x - ups_g_in_axes2_x*ups_h_group_2_in_axes2_y
+        )
         ups_mu_2_in_axes2_x = (
-        ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t -
-            ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
-            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+        ups_mu_2_t_2 + ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_xz*ups_qdd_2_t_2 +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x - ups_mu_2_t_5 -
             ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z
+            ups_S_ddot_in_axes2_y*ups_h_3_in_spec2_y - ups_S_ddot_in_axes2_z*ups_h_3_in_spec2_z
         )
         ups_mu_2_in_axes2_y = (
-        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy + ups_S_ddot_in_axes2_x*ups_h_3_in_spec2_y +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y - ups_mu_2_t_3 - ups_mu_2_t_6 -
             ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
-            ups_phi_3_t_2) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
-            ups_g_in_axes2_x*ups_h_2_in_spec2_y
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_S_ddot_in_axes2_z*ups_h_3_in_spec2_x
         )
         ups_mu_2_in_axes2_z = (
-        ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_t -
-            ups_phi_3_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+        ups_mu_2_t_4 + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
             ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
-            ups_g_in_axes2_y*ups_h_2_in_spec2_x
+            ups_S_ddot_in_axes2_x*ups_h_3_in_spec2_z + ups_S_ddot_in_axes2_y*ups_h_3_in_spec2_x +
+            ups_Sigma_2_in_axes2_xx*ups_qdd_2_t_2 - ups_mu_2_t_7 -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_t = ups_h_3_in_spec2_z*(ups_W_2_t_2 + ups_mu_2_t)
+        ups_c_t_2 = ups_h_3_in_spec2_y*(ups_W_2_t + ups_mu_2_t)
         ups_c_in_axes2_y = (
-        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_in_axes2_z -
-            ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
-            ups_phi_3_t_2)
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - ups_c_t - inv_ups_q_3*ups_mu_2_in_axes2_z -
+            ups_h_3_in_spec2_x*ups_qdd_2_t_2
         )
         ups_c_in_axes2_z = (
-        inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-            ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t)
-            - ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
+        ups_c_t_2 + inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y -
+            ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
         )
         ups_c_x = (
         axis_y_ups_axes2_x*ups_c_in_axes2_y + axis_z_ups_axes2_x*ups_c_in_axes2_z -
@@ -2603,15 +2655,22 @@ def _run_inverse_kinematics(m, X):
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
         ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
         ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-q_1) displacement of joint 1
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_q_1 = atan2(inv_ups_root_1*ups_S_in_turn1_y, inv_ups_root_1*ups_S_in_turn1_x)
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_1) displacement of joint 1
+        ups_q_1 = atan2(ups_s_1, ups_c_1)
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-q_2) displacement of joint 2
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
-        ups_q_2 = atan2(-inv_ups_q_3*ups_S_in_turn1_z, inv_ups_q_3*ups_root_1)
+        ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        ups_q_2 = atan2(-ups_e_1_in_axes2_x, ups_c_2)
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
@@ -2676,8 +2735,9 @@ def _run_joint_rates(m, X, V):
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-S_dot) velocity of the connection point
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
+        # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
@@ -2693,13 +2753,18 @@ def _run_joint_rates(m, X, V):
             axis_z_ups_axes2_z*t_dot_z)
         )
         # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         ups_qd_2 = (
-        inv_ups_q_3*(t_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
-            t_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
-            t_dot_z*(axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y))
+        inv_ups_q_3*(axis_y_ups_axes2_x*t_dot_x + axis_y_ups_axes2_y*t_dot_y +
+            axis_y_ups_axes2_z*t_dot_z)
         )
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
@@ -2773,8 +2838,12 @@ def _run_joint_accelerations(m, X, V, A):
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-S_dot) velocity of the connection point
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
@@ -2804,30 +2873,36 @@ def _run_joint_accelerations(m, X, V, A):
             axis_y_ups_axes2_z*t_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z*ups_qd_1
-        ups_omega_1_in_axes2_y = -inv_ups_q_3*ups_qd_1*ups_root_1
+        ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
+        ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
+        # (ups-S_ddot) acceleration of the connection point
+        ups_S_ddot_in_axes2_x = (
+        axis_x_ups_axes2_x*t_ddot_x + axis_x_ups_axes2_y*t_ddot_y + axis_x_ups_axes2_z*t_ddot_z
+        )
+        ups_S_ddot_t = axis_y_ups_axes2_x*t_ddot_x
+        ups_S_ddot_t_2 = axis_y_ups_axes2_y*t_ddot_y
+        ups_S_ddot_t_3 = axis_y_ups_axes2_z*t_ddot_z
+        ups_S_ddot_in_axes2_z = (
+        axis_z_ups_axes2_x*t_ddot_x + axis_z_ups_axes2_y*t_ddot_y + axis_z_ups_axes2_z*t_ddot_z
+        )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
-        ups_bias_in_axes2_z = (
-        2.0*ups_omega_1_in_axes2_x*ups_q_3*ups_qd_2 - ups_bias_t*ups_omega_1_in_axes2_y
-        )
+        ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
         # (ups-rel) acceleration of the connection point left to the joint accelerations
-        ups_rel_in_axes2_x = (
-        axis_x_ups_axes2_x*t_ddot_x + axis_x_ups_axes2_y*t_ddot_y + axis_x_ups_axes2_z*t_ddot_z -
-            ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2)
-        )
-        ups_rel_in_axes2_z = (
-        axis_z_ups_axes2_x*t_ddot_x + axis_z_ups_axes2_y*t_ddot_y + axis_z_ups_axes2_z*t_ddot_z -
-            ups_bias_in_axes2_z
-        )
+        ups_rel_in_axes2_x = ups_S_ddot_in_axes2_x - ups_W_2_in_axes2_xx*ups_q_3
+        ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
         ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-qdd_2) acceleration of joint 2
-        ups_qdd_2 = (
-        inv_ups_q_3*(axis_y_ups_axes2_x*t_ddot_x + axis_y_ups_axes2_y*t_ddot_y +
-            axis_y_ups_axes2_z*t_ddot_z - ups_bias_t*ups_qd_2) -
-            ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
-        )
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
+        ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
+        ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
@@ -2842,7 +2917,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 393 mul, 291 add, 6 div, 6 sqrt, 0 trig
+# legs: 390 mul, 294 add, 6 div, 6 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -2877,10 +2952,10 @@ def _run_legs(m, X, V, A):
             ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
             ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
             ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
+            ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_link3_mass,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
@@ -2909,6 +2984,8 @@ def _run_legs(m, X, V, A):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
+        # (ups-q_2) displacement of joint 2
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         # (ups-S_dot) velocity of the connection point
         axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
@@ -2939,14 +3016,23 @@ def _run_legs(m, X, V, A):
             axis_y_ups_axes2_z*t_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
         ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_W_2_t_2 = ups_qd_2*ups_qd_2
+        ups_W_2_in_axes2_xx = -ups_W_2_t - ups_W_2_t_2
         ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-S_ddot) acceleration of the connection point
+        ups_S_ddot_in_axes2_x = (
+        axis_x_ups_axes2_x*t_ddot_x + axis_x_ups_axes2_y*t_ddot_y + axis_x_ups_axes2_z*t_ddot_z
+        )
+        ups_S_ddot_t = axis_y_ups_axes2_x*t_ddot_x
+        ups_S_ddot_t_2 = axis_y_ups_axes2_y*t_ddot_y
+        ups_S_ddot_t_3 = axis_y_ups_axes2_z*t_ddot_z
+        ups_S_ddot_in_axes2_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3
         ups_S_ddot_in_axes2_z = (
         axis_z_ups_axes2_x*t_ddot_x + axis_z_ups_axes2_y*t_ddot_y + axis_z_ups_axes2_z*t_ddot_z
         )
@@ -2957,6 +3043,10 @@ def _run_legs(m, X, V, A):
         ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
         ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
+        ups_qdd_2_t = ups_bias_t*ups_qd_2
+        ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
+        ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
         # (ups-alpha_1) angular acceleration of link 1
         ups_alpha_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1
         ups_alpha_1_in_axes2_y = -ups_c_2*ups_qdd_1
@@ -2964,13 +3054,7 @@ def _run_legs(m, X, V, A):
         ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
         ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2) acceleration tensor of link 2
-        ups_B_2_t = axis_y_ups_axes2_x*t_ddot_x
-        ups_B_2_t_2 = axis_y_ups_axes2_y*t_ddot_y
-        ups_B_2_t_3 = axis_y_ups_axes2_z*t_ddot_z
-        ups_B_2_in_axes2_yx = (
-        inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
+        ups_B_2_in_axes2_xy = ups_W_2_in_axes2_xy - ups_qdd_2
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
@@ -2978,58 +3062,63 @@ def _run_legs(m, X, V, A):
         ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
         ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
         ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
-        ups_acc_3_in_axes2_x = (
-        axis_x_ups_axes2_x*t_ddot_x + axis_x_ups_axes2_y*t_ddot_y + axis_x_ups_axes2_z*t_ddot_z -
-            ups_g_in_axes2_x
-        )
-        ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_g_in_axes2_y
+        ups_acc_3_in_axes2_x = ups_S_ddot_in_axes2_x - ups_g_in_axes2_x
+        ups_acc_3_in_axes2_y = ups_S_ddot_in_axes2_y - ups_g_in_axes2_y
         ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
+        # (ups-phi_3) inertia force of link 3 from its turning about its reference point
+        ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
+        ups_phi_3_in_axes2_x = (
+        ups_phi_3_t + ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z
+        )
         # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
         ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
-        ups_mu_2_t_2 = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
-        ups_mu_2_t_3 = ups_qd_2*ups_qd_2
+        ups_mu_2_t_2 = ups_J_group_2_in_axes2_yz*(ups_W_2_t - ups_W_2_t_2)
+        ups_mu_2_t_3 = ups_J_group_2_in_axes2_xz*(ups_mu_2_t - ups_W_2_t_2)
+        ups_mu_2_t_4 = ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_W_2_t)
+        ups_mu_2_t_5 = (
+        ups_g_in_axes2_z*ups_h_group_2_in_axes2_y - ups_g_in_axes2_y*ups_h_group_2_in_axes2_z
+        )
+        ups_mu_2_t_6 = (
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_z - ups_g_in_axes2_z*ups_h_group_2_in_axes2_x
+        )
+        ups_mu_2_t_7 = (
+        ups_g_in_axes2_y*ups_h_group_2_in_axes2_x - ups_g_in_axes2_x*ups_h_group_2_in_axes2_y
+        )
         ups_mu_2_in_axes2_x = (
-        ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2
-            - ups_mu_2_t_3) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
-            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+        ups_mu_2_t_2 + ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_xz*ups_qdd_2_t_2 +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x - ups_mu_2_t_5 -
             ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z
+            ups_S_ddot_in_axes2_y*ups_h_3_in_spec2_y - ups_S_ddot_in_axes2_z*ups_h_3_in_spec2_z
         )
         ups_mu_2_in_axes2_y = (
-        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy + ups_S_ddot_in_axes2_x*ups_h_3_in_spec2_y +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y - ups_mu_2_t_3 - ups_mu_2_t_6 -
             ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
-            ups_mu_2_t_3) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
-            ups_g_in_axes2_x*ups_h_2_in_spec2_y
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_S_ddot_in_axes2_z*ups_h_3_in_spec2_x
         )
         ups_mu_2_in_axes2_z = (
-        ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_t -
-            ups_mu_2_t_2) + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+        ups_mu_2_t_4 + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
             ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
-            ups_g_in_axes2_y*ups_h_2_in_spec2_x
+            ups_S_ddot_in_axes2_x*ups_h_3_in_spec2_z + ups_S_ddot_in_axes2_y*ups_h_3_in_spec2_x +
+            ups_Sigma_2_in_axes2_xx*ups_qdd_2_t_2 - ups_mu_2_t_7 -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_t = ups_h_3_in_spec2_z*(ups_W_2_t_2 + ups_mu_2_t)
+        ups_c_t_2 = ups_h_3_in_spec2_y*(ups_W_2_t + ups_mu_2_t)
         ups_c_in_axes2_y = (
-        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_in_axes2_z -
-            ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
-            ups_mu_2_t_3)
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - ups_c_t - inv_ups_q_3*ups_mu_2_in_axes2_z -
+            ups_h_3_in_spec2_x*ups_qdd_2_t_2
         )
         ups_c_in_axes2_z = (
-        inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-            ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t +
-            ups_mu_2_t_2) - ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
+        ups_c_t_2 + inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y -
+            ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
-        ups_c_true_in_axes2_x = (
-        ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z - ups_acc_3_in_axes2_x*ups_link3_mass -
-            ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y - ups_h_3_in_spec2_x*(-ups_mu_2_t_2 -
-            ups_mu_2_t_3)
-        )
+        ups_c_true_in_axes2_x = -ups_phi_3_in_axes2_x - ups_acc_3_in_axes2_x*ups_link3_mass
         ups_c_true_in_axes2_y = ups_c_in_axes2_y - ups_acc_3_in_axes2_y*ups_link3_mass
         ups_c_true_in_axes2_z = ups_c_in_axes2_z - ups_acc_3_in_axes2_z*ups_link3_mass
         ups_c_true_x = (
@@ -3117,26 +3206,29 @@ def _run_potential(m, X):
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
-        # (potential) potential energy
+        # (ups-q_2) displacement of joint 2
         ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
-        ups_potential_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_potential_t_5 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
-        ups_potential_t_6 = (
-        (ups_e_1_in_axes2_x*ups_potential_t_4 - ups_acc_3_t_3*ups_c_2)*(ups_h_2_in_spec2_z +
-            ups_h_3_in_spec2_z - ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_5 -
-            ups_c_2*ups_potential_t_3)) - (ups_acc_3_t_2*ups_c_1 -
-            ups_acc_3_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
-            ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1)) -
-            (ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
-            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
-            ups_e_1_in_axes2_x*ups_potential_t_3))
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        # (potential) potential energy
+        ups_potential_t_4 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
+        ups_potential_t_5 = (
+        ups_g_in_axes2_y*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
+            ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_4 - ups_c_2*ups_potential_t_3)) -
+            ups_g_in_axes2_x*(ups_h_2_in_spec2_x + ups_h_3_in_spec2_x +
+            ups_link2_mass*(ups_c_2*ups_potential_t_4 + ups_e_1_in_axes2_x*ups_potential_t_3)) -
+            ups_g_in_axes2_z*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
+            ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1))
         )
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (potential) potential energy
-        potential_ups += ups_potential_t_6
+        potential_ups += ups_potential_t_5
     # (potential) potential energy
     potential = potential_ups - potential_t
     # (potential) potential energy
@@ -3193,12 +3285,12 @@ def _run_condition(m, X):
         # (ups-q_3) displacement of joint 3
         ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
         ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
-        # (ups-w_2) reciprocal vector 2
-        ups_w_2_in_axes2_y = 1.0/ups_q_3
-        # (ups-w_3) reciprocal vector 3
-        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
-        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
-        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
+        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ups_q_3 = 1.0/ups_q_3
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         ups_pivot_size = abs(ups_root_1_t)
         ups_pivot_size_2 = abs(ups_q_3_t)
@@ -3223,9 +3315,9 @@ def _run_condition(m, X):
         # (spread) rms distance of the platform points from their centroid
         spread_ups += ups_spread_t_4
         # (ups-w_3) reciprocal vector 3
-        out_H[_H_ups[0][leg]] = ups_w_3_x
-        out_H[_H_ups[1][leg]] = ups_w_3_y
-        out_H[_H_ups[2][leg]] = ups_w_3_z
+        out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
+        out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
+        out_H[_H_ups[2][leg]] = axis_x_ups_axes2_z
         # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_ups[0][leg]] = ups_least_pivots
     # (spread) rms distance of the platform points from their centroid
@@ -3379,11 +3471,11 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_2 = q[[2, 5, 8]]
-    gap = q_actuated - q_of_inverse_kinematics_from_2
-    return (gap,)
+    residual = q_actuated - q_of_inverse_kinematics_from_2
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -3392,7 +3484,7 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 

@@ -148,9 +148,9 @@ INLINE int is_finite(real x)
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
     real total[LANES];
-} verdict;
+} status_flags;
 
-INLINE void start(size_t w, verdict *t)
+INLINE void start(size_t w, status_flags *t)
 {
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
@@ -212,6 +212,30 @@ INLINE void check(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
+/* Flag a state with inputs that are not finite: they are looked at where their sum is not. */
+INLINE void check_one(size_t n, const real *a, real *flags)
+{
+    check(n, 1, a, flags);
+}
+
+INLINE void check_two(size_t m, const real *a, size_t n, const real *b, real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+    }
+}
+
+INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t p, const real *c,
+    real *flags)
+{
+    if (!is_finite(total(a, m) + total(b, n) + total(c, p))) {
+        check_one(m, a, flags);
+        check_one(n, b, flags);
+        check_one(p, c, flags);
+    }
+}
+
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *x, real *total)
 {
@@ -260,7 +284,7 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t)
+INLINE int status_of(const status_flags *t)
 {
     return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
@@ -270,7 +294,7 @@ INLINE int judge(const verdict *t)
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-APART void suspect(const verdict *t, int *code)
+APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -283,7 +307,7 @@ APART void suspect(const verdict *t, int *code)
 }
 
 /* The same as flags, for one state. */
-INLINE void blame(int code, verdict *t)
+INLINE void flag_status(int code, status_flags *t)
 {
     t->invalid[0] += UNLESS(code != INVALID);
     t->diverged[0] += UNLESS(code != NOT_CONVERGED);
@@ -300,16 +324,16 @@ APART void refuse(size_t size, real *out)
 }
 
 /* The status of a state; an output is refused where it is impossible. */
-INLINE int settled(const verdict *t, size_t size, real *out)
+INLINE int final_status(const status_flags *t, size_t size, real *out)
 {
-    const int code = judge(t);
+    const int code = status_of(t);
     if (code != OK) {
         refuse(size, out);
     }
     return code;
 }
 
-/* Outputs of a state where the user wants them, and of states side by side, state by state. */
+/* An output of a state where the user wants it. */
 INLINE void copy(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
@@ -317,7 +341,16 @@ INLINE void copy(size_t size, const real *x, real *out)
     }
 }
 
-INLINE void deliver(size_t size, const real *x, real *out)
+/* The status of a state with one result, which is put where the user wants it. */
+INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
+{
+    check(size, 1, x, t->overflow);
+    copy(size, x, out);
+    return final_status(t, size, out);
+}
+
+/* Outputs of states side by side, state by state. */
+INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1493,10 +1526,28 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
-        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
-        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+    real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
+        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
+
+INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
+{
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real W_p_t = omega_x*omega_x;
+    const real omega_y = V[4*w + k];
+    const real W_p_t_2 = omega_y*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_t_3 = omega_z*omega_z;
+    v->W_p_t_4 = W_p_t_2 + W_p_t_3;
+    v->W_p_xy = omega_x*omega_y;
+    v->W_p_xz = omega_x*omega_z;
+    v->W_p_t_5 = W_p_t + W_p_t_3;
+    v->W_p_yz = omega_y*omega_z;
+    v->W_p_t_6 = W_p_t + W_p_t_2;
+}
 
 INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
@@ -1506,10 +1557,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real X_5 = X[5*w + k];
     const real X_6 = X[6*w + k];
     const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-    const real quaternion_scale = 2/quaternion_norm2;
-    const real quaternion_sx = X_3*quaternion_scale;
-    const real quaternion_sy = X_4*quaternion_scale;
-    const real quaternion_sz = X_5*quaternion_scale;
+    v->quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*v->quaternion_scale;
+    const real quaternion_sy = X_4*v->quaternion_scale;
+    const real quaternion_sz = X_5*v->quaternion_scale;
     const real quaternion_wx = X_6*quaternion_sx;
     const real quaternion_wy = X_6*quaternion_sy;
     const real quaternion_wz = X_6*quaternion_sz;
@@ -1519,53 +1570,22 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real quaternion_yy = X_4*quaternion_sy;
     const real quaternion_yz = X_4*quaternion_sz;
     const real quaternion_zz = X_5*quaternion_sz;
-    const real R_xx = 1 - quaternion_yy - quaternion_zz;
-    const real R_xy = quaternion_xy - quaternion_wz;
-    const real R_xz = quaternion_wy + quaternion_xz;
-    const real R_yx = quaternion_wz + quaternion_xy;
-    const real R_yy = 1 - quaternion_xx - quaternion_zz;
-    const real R_yz = quaternion_yz - quaternion_wx;
-    const real R_zx = quaternion_xz - quaternion_wy;
-    const real R_zy = quaternion_wx + quaternion_yz;
-    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    v->R_xx = 1 - quaternion_yy - quaternion_zz;
+    v->R_xy = quaternion_xy - quaternion_wz;
+    v->R_xz = quaternion_wy + quaternion_xz;
+    v->R_yx = quaternion_wz + quaternion_xy;
+    v->R_yy = 1 - quaternion_xx - quaternion_zz;
+    v->R_yz = quaternion_yz - quaternion_wx;
+    v->R_zx = quaternion_xz - quaternion_wy;
+    v->R_zy = quaternion_wx + quaternion_yz;
+    v->R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
-        R_xx*m->h_star_in_platform_x;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
-        R_yy*m->h_star_in_platform_y;
-    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
-        R_zz*m->h_star_in_platform_z;
-    v->quaternion_scale = quaternion_scale;
-    v->R_xx = R_xx;
-    v->R_xy = R_xy;
-    v->R_xz = R_xz;
-    v->R_yx = R_yx;
-    v->R_yy = R_yy;
-    v->R_yz = R_yz;
-    v->R_zx = R_zx;
-    v->R_zy = R_zy;
-    v->R_zz = R_zz;
-    v->h_star_x = h_star_x;
-    v->h_star_y = h_star_y;
-    v->h_star_z = h_star_z;
-}
-
-INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
-{
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
-    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
-    v->omega_in_platform_x = omega_in_platform_x;
-    v->omega_in_platform_y = omega_in_platform_y;
-    v->omega_in_platform_z = omega_in_platform_z;
-}
-
-INLINE void stage_M_dynamics(const prepared *m, values *v)
-{
+    v->h_star_x = v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
+        v->R_xx*m->h_star_in_platform_x;
+    v->h_star_y = v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
+        v->R_yy*m->h_star_in_platform_y;
+    v->h_star_z = v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
+        v->R_zz*m->h_star_in_platform_z;
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_6*v->R_xy +
         m->J_star_in_platform_xy*v->R_xx;
@@ -1577,23 +1597,31 @@ INLINE void stage_M_dynamics(const prepared *m, values *v)
     const real J_star_t_5 = m->J_star_t_8*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_7 = m->J_star_t_8*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_9 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_9;
-    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_9;
+    v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
-    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+    v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_7*v->R_xz;
     const real J_star_t_10 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_10;
-    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_10;
+    v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_7*v->R_yz;
     const real J_star_t_11 = J_star_t_3*v->R_zy - J_star_t_7*v->R_zz;
-    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_11;
-    v->J_star_xx = J_star_xx;
-    v->J_star_xy = J_star_xy;
-    v->J_star_xz = J_star_xz;
-    v->J_star_yy = J_star_yy;
-    v->J_star_yz = J_star_yz;
-    v->J_star_zz = J_star_zz;
+    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_11;
+}
+
+INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
+{
+    /* (B_p) acceleration tensor of the platform */
+    const real alpha_z = A[5*w + k];
+    v->B_p_xy = v->W_p_xy - alpha_z;
+    const real alpha_y = A[4*w + k];
+    v->B_p_xz = alpha_y + v->W_p_xz;
+    v->B_p_yx = alpha_z + v->W_p_xy;
+    const real alpha_x = A[3*w + k];
+    v->B_p_yz = v->W_p_yz - alpha_x;
+    v->B_p_zx = v->W_p_xz - alpha_y;
+    v->B_p_zy = alpha_x + v->W_p_yz;
 }
 
 INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
@@ -1605,46 +1633,19 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
+    v->Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    v->Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    v->Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
-        v->R_xx*m->gravity_x;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
-        v->R_yy*m->gravity_y;
-    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
-        v->R_zz*m->gravity_z;
-    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
-        Z_q_t_2*v->omega_in_platform_z;
-    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
-        Z_q_t_3*v->omega_in_platform_x;
-    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
-        Z_q_t*v->omega_in_platform_y;
-    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
-        v->R_xz*Z_q_in_platform_z;
-    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
-        v->R_yz*Z_q_in_platform_z;
-    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
-        v->R_zz*Z_q_in_platform_z;
-    v->Z_p_x = Z_p_x;
-    v->Z_p_y = Z_p_y;
-    v->Z_p_z = Z_p_z;
-    v->Z_q_x = Z_q_x;
-    v->Z_q_y = Z_q_y;
-    v->Z_q_z = Z_q_z;
+    const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
+    const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
+    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
+        Z_q_t_2*omega_z;
+    v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
+        Z_q_t_3*omega_x;
+    v->Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x + Z_q_t_2*omega_x -
+        Z_q_t*omega_y;
 }
 
 typedef struct {
@@ -1652,20 +1653,21 @@ typedef struct {
         upu_c_2, upu_e_1_in_axes2_x, axis_z_upu_axes2_x, axis_z_upu_axes2_y, axis_z_upu_axes2_z,
         axis_y_upu_axes2_x, axis_y_upu_axes2_y, axis_y_upu_axes2_z, axis_x_upu_axes2_x,
         axis_x_upu_axes2_y, axis_x_upu_axes2_z, upu_n_m1_in_axes2_y, upu_end_p1_in_axes2_y,
-        upu_volume_c_t, upu_n_c_in_axes2_z, upu_n_c_x, upu_n_c_y, upu_n_c_z, upu_w_1_t,
-        upu_w_1_in_axes2_z, upu_end_p1_in_axes2_z, upu_g_in_axes2_z, upu_a_p_x, upu_a_p_y, upu_a_p_z,
-        upu_etad_1_t, upu_S_dot_t_3, upu_S_dot_t_4, upu_S_dot_t_5, upu_S_dot_x, upu_S_dot_y,
-        upu_S_dot_z, upu_S_dot_in_axes2_x, upu_qd_2, upu_bias_t, upu_omega_in_axes2_x,
-        upu_omega_in_axes2_y, upu_omega_in_axes2_z, upu_omega_1_in_axes2_x, upu_omega_1_in_axes2_y,
-        upu_W_2_in_axes2_xz, upu_nu_1_t_2, upu_S_ddot_x, upu_S_ddot_y, upu_S_ddot_z, upu_w_3_x,
-        upu_w_3_y, upu_w_3_z, upu_H_a_3_x, upu_H_a_3_y, upu_H_a_3_z, upu_dalpha_phi_3_in_axes2_xy,
-        upu_d_phi_3_in_axes2_xy, upu_dalpha_G_in_axes2_zx, upu_dalpha_G_in_axes2_zy,
-        upu_dalpha_G_in_axes2_yx, upu_dalpha_G_in_axes2_yy, upu_d_G_in_axes2_yz,
-        upu_dalpha_G_m1_in_axes2_x, upu_dalpha_G_m1_in_axes2_y, upu_d_G_m1_in_axes2_x, upu_d_G_m1_t,
-        upu_d_G_m1_t_2, upu_dalpha_c_in_axes2_xx, upu_d_c_in_axes2_xz, upu_Q_t_2, upu_Q_t_4,
-        upu_u_1_x, upu_u_1_y, upu_u_1_z, upu_B_2_o_in_axes2_yx, upu_g_in_axes2_x, upu_g_in_axes2_y,
-        upu_acc_3_o_in_axes2_x, upu_acc_3_o_in_axes2_y, upu_f_3_o_t_3, upu_G_m_in_axes2_y, upu_c_x,
-        upu_c_y, upu_c_z, upu_c_m_in_axes2_x;
+        upu_n_m1_x, upu_n_m1_y, upu_n_m1_z, upu_volume_c_t, upu_n_c_in_axes2_z, upu_n_c_x, upu_n_c_y,
+        upu_n_c_z, upu_w_1_t, upu_w_1_in_axes2_z, upu_end_p1_in_axes2_z, upu_g_in_axes2_z,
+        upu_g_in_axes2_x, upu_g_in_axes2_y, upu_mu_2_t, upu_mu_2_t_2, upu_mu_2_t_3, upu_H_a_3_x,
+        upu_H_a_3_y, upu_H_a_3_z, upu_Hk_a_1_x, upu_Hk_a_1_y, upu_Hk_a_1_z, upu_etad_1_t,
+        upu_S_dot_in_axes2_x, upu_qd_2, upu_omega_1_in_axes2_x, upu_omega_1_in_axes2_y,
+        upu_W_2_in_axes2_yz, upu_W_2_in_axes2_xz, upu_W_2_t, upu_u_1_x, upu_u_1_y, upu_u_1_z,
+        upu_bias_t_2, upu_rel_o_in_axes2_z, upu_nu_1, upu_qdd_2_t, upu_qd_1_2,
+        upu_omega_1_in_axes2_x_2, upu_W_2_in_axes2_yz_2, upu_W_2_in_axes2_xz_2, upu_W_2_t_2,
+        upu_W_2_t_3, upu_W_2_in_axes2_xy_2, upu_bias_t_3, upu_bias_in_axes2_z_2, upu_nu_1_2,
+        upu_S_ddot_in_axes2_x, upu_qdd_1_t, upu_qdd_2_t_2, upu_qdd_2_t_3, upu_qdd_2, upu_Q_xx,
+        upu_Q_xy, upu_Q_xz, upu_Q_yy, upu_Q_yz, upu_Q_zz, upu_M_ta_t_10, upu_M_ta_t_11, upu_M_ta_t_12,
+        upu_M_ta_t_13, upu_M_ta_t_14, upu_M_ta_t_15, upu_M_ta_t_16, upu_M_ta_t_17, upu_M_ta_t_18,
+        upu_M_aa_t, upu_M_aa_t_2, upu_M_aa_t_3, upu_M_aa_t_4, upu_M_aa_t_5, upu_M_aa_t_6, upu_U_x,
+        upu_U_y, upu_U_z, upu_Z_a_t, upu_Z_a_t_2, upu_Z_a_t_3, upu_c_x, upu_c_y, upu_c_z, upu_c_m_x,
+        upu_c_m_y, upu_c_m_z;
 } values_upu;
 
 INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1675,24 +1677,24 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real upu_q_x = R_xy*m->upu_platform_point_y[i] + R_xz*m->upu_platform_point_z[i] +
+    v->upu_q_x = R_xy*m->upu_platform_point_y[i] + R_xz*m->upu_platform_point_z[i] +
         R_xx*m->upu_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real upu_q_y = R_yx*m->upu_platform_point_x[i] + R_yz*m->upu_platform_point_z[i] +
+    v->upu_q_y = R_yx*m->upu_platform_point_x[i] + R_yz*m->upu_platform_point_z[i] +
         R_yy*m->upu_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real upu_q_z = R_zx*m->upu_platform_point_x[i] + R_zy*m->upu_platform_point_y[i] +
+    v->upu_q_z = R_zx*m->upu_platform_point_x[i] + R_zy*m->upu_platform_point_y[i] +
         R_zz*m->upu_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real upu_S_x = t_x - m->upu_base_point_x[i] + upu_q_x;
+    const real upu_S_x = t_x - m->upu_base_point_x[i] + v->upu_q_x;
     const real t_y = X[1*w + j];
-    const real upu_S_y = t_y - m->upu_base_point_y[i] + upu_q_y;
+    const real upu_S_y = t_y - m->upu_base_point_y[i] + v->upu_q_y;
     const real t_z = X[2*w + j];
-    const real upu_S_z = t_z - m->upu_base_point_z[i] + upu_q_z;
+    const real upu_S_z = t_z - m->upu_base_point_z[i] + v->upu_q_z;
     const real upu_S_in_turn1_x = upu_S_x*m->upu_base_frame_xx[i] +
         upu_S_y*m->upu_base_frame_yx[i] + upu_S_z*m->upu_base_frame_zx[i];
     const real upu_S_in_turn1_y = upu_S_x*m->upu_base_frame_xy[i] +
@@ -1700,42 +1702,42 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real upu_S_in_turn1_z = upu_S_x*m->upu_base_frame_xz[i] +
         upu_S_y*m->upu_base_frame_yz[i] + upu_S_z*m->upu_base_frame_zz[i];
     /* (upu-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x +
-        upu_S_in_turn1_y*upu_S_in_turn1_y;
-    const real upu_root_1 = m->upu_branch_1[i]*root(upu_root_1_t);
+    v->upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y;
+    const real upu_root_1 = m->upu_branch_1[i]*root(v->upu_root_1_t);
     /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_upu_root_1 = 1/upu_root_1;
-    const real upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x;
+    v->upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x;
     /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-    const real upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y;
+    v->upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y;
     /* (upu-q_3) displacement of joint 3 */
-    const real upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t;
-    const real upu_q_3 = m->upu_branch_2[i]*root(upu_q_3_t);
+    v->upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + v->upu_root_1_t;
+    v->upu_q_3 = m->upu_branch_2[i]*root(v->upu_q_3_t);
     /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_upu_q_3 = 1/upu_q_3;
-    const real upu_c_2 = inv_upu_q_3*upu_root_1;
+    v->inv_upu_q_3 = 1/v->upu_q_3;
+    v->upu_c_2 = v->inv_upu_q_3*upu_root_1;
+    /* (upu-q_2) displacement of joint 2 */
+    v->upu_e_1_in_axes2_x = v->inv_upu_q_3*upu_S_in_turn1_z;
     /* (upu-S_dot) velocity of the connection point */
-    const real upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z;
-    const real axis_z_upu_axes2_x = m->upu_base_frame_xy[i]*upu_c_1 -
-        m->upu_base_frame_xx[i]*upu_s_1;
-    const real axis_z_upu_axes2_y = m->upu_base_frame_yy[i]*upu_c_1 -
-        m->upu_base_frame_yx[i]*upu_s_1;
-    const real axis_z_upu_axes2_z = m->upu_base_frame_zy[i]*upu_c_1 -
-        m->upu_base_frame_zx[i]*upu_s_1;
-    const real upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x;
-    const real upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1;
-    const real axis_y_upu_axes2_x = upu_S_dot_t*m->upu_base_frame_xx[i] -
-        m->upu_base_frame_xz[i]*upu_c_2 + upu_S_dot_t_2*m->upu_base_frame_xy[i];
-    const real axis_y_upu_axes2_y = upu_S_dot_t*m->upu_base_frame_yx[i] -
-        m->upu_base_frame_yz[i]*upu_c_2 + upu_S_dot_t_2*m->upu_base_frame_yy[i];
-    const real axis_y_upu_axes2_z = upu_S_dot_t*m->upu_base_frame_zx[i] -
-        m->upu_base_frame_zz[i]*upu_c_2 + upu_S_dot_t_2*m->upu_base_frame_zy[i];
-    const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z -
-        axis_y_upu_axes2_z*axis_z_upu_axes2_y;
-    const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x -
-        axis_y_upu_axes2_x*axis_z_upu_axes2_z;
-    const real axis_x_upu_axes2_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y -
-        axis_y_upu_axes2_y*axis_z_upu_axes2_x;
+    v->axis_z_upu_axes2_x = m->upu_base_frame_xy[i]*v->upu_c_1 -
+        m->upu_base_frame_xx[i]*v->upu_s_1;
+    v->axis_z_upu_axes2_y = m->upu_base_frame_yy[i]*v->upu_c_1 -
+        m->upu_base_frame_yx[i]*v->upu_s_1;
+    v->axis_z_upu_axes2_z = m->upu_base_frame_zy[i]*v->upu_c_1 -
+        m->upu_base_frame_zx[i]*v->upu_s_1;
+    const real upu_S_dot_t = v->upu_c_1*v->upu_e_1_in_axes2_x;
+    const real upu_S_dot_t_2 = v->upu_e_1_in_axes2_x*v->upu_s_1;
+    v->axis_y_upu_axes2_x = upu_S_dot_t*m->upu_base_frame_xx[i] -
+        m->upu_base_frame_xz[i]*v->upu_c_2 + upu_S_dot_t_2*m->upu_base_frame_xy[i];
+    v->axis_y_upu_axes2_y = upu_S_dot_t*m->upu_base_frame_yx[i] -
+        m->upu_base_frame_yz[i]*v->upu_c_2 + upu_S_dot_t_2*m->upu_base_frame_yy[i];
+    v->axis_y_upu_axes2_z = upu_S_dot_t*m->upu_base_frame_zx[i] -
+        m->upu_base_frame_zz[i]*v->upu_c_2 + upu_S_dot_t_2*m->upu_base_frame_zy[i];
+    v->axis_x_upu_axes2_x = v->axis_y_upu_axes2_y*v->axis_z_upu_axes2_z -
+        v->axis_y_upu_axes2_z*v->axis_z_upu_axes2_y;
+    v->axis_x_upu_axes2_y = v->axis_y_upu_axes2_z*v->axis_z_upu_axes2_x -
+        v->axis_y_upu_axes2_x*v->axis_z_upu_axes2_z;
+    v->axis_x_upu_axes2_z = v->axis_y_upu_axes2_x*v->axis_z_upu_axes2_y -
+        v->axis_y_upu_axes2_y*v->axis_z_upu_axes2_x;
     /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
     const real upu_n_m1_t =
         m->upu_platform_joint_axis_platform_x[i]*(R_yx*m->upu_base_frame_yx[i] +
@@ -1758,79 +1760,63 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
         R_zy*m->upu_base_frame_zz[i] + R_yy*m->upu_base_frame_yz[i]) +
         m->upu_platform_joint_axis_platform_z[i]*(R_xz*m->upu_base_frame_xz[i] +
         R_yz*m->upu_base_frame_yz[i] + R_zz*m->upu_base_frame_zz[i]);
-    const real upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1;
-    const real upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3;
-    const real upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3;
-    const real upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y +
-        upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y;
+    const real upu_n_m1_t_4 = v->upu_c_1*upu_n_m1_t + upu_n_m1_t_2*v->upu_s_1;
+    v->upu_n_m1_in_axes2_y = v->upu_c_2*upu_n_m1_t_4 + v->upu_e_1_in_axes2_x*upu_n_m1_t_3;
+    v->upu_end_p1_in_axes2_y = v->upu_e_1_in_axes2_x*upu_n_m1_t_4 - v->upu_c_2*upu_n_m1_t_3;
+    const real upu_n_m1_t_5 = v->upu_c_2*v->upu_n_m1_in_axes2_y +
+        v->upu_e_1_in_axes2_x*v->upu_end_p1_in_axes2_y;
+    v->upu_n_m1_x = v->axis_y_upu_axes2_x*v->upu_n_m1_in_axes2_y -
+        v->axis_x_upu_axes2_x*v->upu_end_p1_in_axes2_y;
+    v->upu_n_m1_y = v->axis_y_upu_axes2_y*v->upu_n_m1_in_axes2_y -
+        v->axis_x_upu_axes2_y*v->upu_end_p1_in_axes2_y;
+    v->upu_n_m1_z = v->axis_y_upu_axes2_z*v->upu_n_m1_in_axes2_y -
+        v->axis_x_upu_axes2_z*v->upu_end_p1_in_axes2_y;
     /* (upu-volume_c) triple product of the velocity vectors */
-    const real upu_volume_c_t = upu_q_3*upu_root_1;
+    v->upu_volume_c_t = v->upu_q_3*upu_root_1;
     /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-    const real upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t;
-    const real upu_n_c_x = axis_z_upu_axes2_x*upu_n_c_in_axes2_z;
-    const real upu_n_c_y = axis_z_upu_axes2_y*upu_n_c_in_axes2_z;
-    const real upu_n_c_z = axis_z_upu_axes2_z*upu_n_c_in_axes2_z;
+    v->upu_n_c_in_axes2_z = upu_n_m1_t_5*v->upu_q_3/v->upu_volume_c_t;
+    v->upu_n_c_x = v->axis_z_upu_axes2_x*v->upu_n_c_in_axes2_z;
+    v->upu_n_c_y = v->axis_z_upu_axes2_y*v->upu_n_c_in_axes2_z;
+    v->upu_n_c_z = v->axis_z_upu_axes2_z*v->upu_n_c_in_axes2_z;
     /* (upu-w_1) force part of reciprocal wrench 1 */
-    const real upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5;
-    const real upu_w_1_in_axes2_z = 1/upu_w_1_t;
+    v->upu_w_1_t = upu_root_1 + v->upu_n_c_in_axes2_z*upu_n_m1_t_5;
+    v->upu_w_1_in_axes2_z = 1/v->upu_w_1_t;
     /* (upu-nd_m1) rate of moment direction 1 */
-    const real upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1;
-    /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real upu_g_in_axes2_z = m->upu_acc_3_t_2[i]*upu_c_1 - m->upu_acc_3_t[i]*upu_s_1;
-    v->upu_q_x = upu_q_x;
-    v->upu_q_y = upu_q_y;
-    v->upu_q_z = upu_q_z;
-    v->upu_root_1_t = upu_root_1_t;
-    v->upu_c_1 = upu_c_1;
-    v->upu_s_1 = upu_s_1;
-    v->upu_q_3_t = upu_q_3_t;
-    v->upu_q_3 = upu_q_3;
-    v->inv_upu_q_3 = inv_upu_q_3;
-    v->upu_c_2 = upu_c_2;
-    v->upu_e_1_in_axes2_x = upu_e_1_in_axes2_x;
-    v->axis_z_upu_axes2_x = axis_z_upu_axes2_x;
-    v->axis_z_upu_axes2_y = axis_z_upu_axes2_y;
-    v->axis_z_upu_axes2_z = axis_z_upu_axes2_z;
-    v->axis_y_upu_axes2_x = axis_y_upu_axes2_x;
-    v->axis_y_upu_axes2_y = axis_y_upu_axes2_y;
-    v->axis_y_upu_axes2_z = axis_y_upu_axes2_z;
-    v->axis_x_upu_axes2_x = axis_x_upu_axes2_x;
-    v->axis_x_upu_axes2_y = axis_x_upu_axes2_y;
-    v->axis_x_upu_axes2_z = axis_x_upu_axes2_z;
-    v->upu_n_m1_in_axes2_y = upu_n_m1_in_axes2_y;
-    v->upu_end_p1_in_axes2_y = upu_end_p1_in_axes2_y;
-    v->upu_volume_c_t = upu_volume_c_t;
-    v->upu_n_c_in_axes2_z = upu_n_c_in_axes2_z;
-    v->upu_n_c_x = upu_n_c_x;
-    v->upu_n_c_y = upu_n_c_y;
-    v->upu_n_c_z = upu_n_c_z;
-    v->upu_w_1_t = upu_w_1_t;
-    v->upu_w_1_in_axes2_z = upu_w_1_in_axes2_z;
-    v->upu_end_p1_in_axes2_z = upu_end_p1_in_axes2_z;
-    v->upu_g_in_axes2_z = upu_g_in_axes2_z;
+    v->upu_end_p1_in_axes2_z = v->upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*v->upu_s_1;
+    /* (upu-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real upu_acc_3_t_4 = m->upu_acc_3_t[i]*v->upu_c_1 + m->upu_acc_3_t_2[i]*v->upu_s_1;
+    v->upu_g_in_axes2_z = m->upu_acc_3_t_2[i]*v->upu_c_1 - m->upu_acc_3_t[i]*v->upu_s_1;
+    v->upu_g_in_axes2_x = m->upu_acc_3_t_3[i]*v->upu_e_1_in_axes2_x +
+        upu_acc_3_t_4*v->upu_c_2;
+    v->upu_g_in_axes2_y = upu_acc_3_t_4*v->upu_e_1_in_axes2_x -
+        m->upu_acc_3_t_3[i]*v->upu_c_2;
+    /* (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    v->upu_mu_2_t = v->upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] +
+        v->upu_g_in_axes2_y*m->upu_h_2_in_spec2_y[i];
+    v->upu_mu_2_t_2 = v->upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i] -
+        v->upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i];
+    v->upu_mu_2_t_3 = v->upu_g_in_axes2_x*m->upu_h_2_in_spec2_z[i] +
+        v->upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i];
+    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+    v->upu_H_a_3_x = v->axis_x_upu_axes2_z*v->upu_q_y - v->axis_x_upu_axes2_y*v->upu_q_z;
+    v->upu_H_a_3_y = v->axis_x_upu_axes2_x*v->upu_q_z - v->axis_x_upu_axes2_z*v->upu_q_x;
+    v->upu_H_a_3_z = v->axis_x_upu_axes2_y*v->upu_q_x - v->axis_x_upu_axes2_x*v->upu_q_y;
+    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+    v->upu_Hk_a_1_x = v->upu_n_m1_x + v->upu_n_c_z*v->upu_q_y - v->upu_n_c_y*v->upu_q_z;
+    v->upu_Hk_a_1_y = v->upu_n_m1_y + v->upu_n_c_x*v->upu_q_z - v->upu_n_c_z*v->upu_q_x;
+    v->upu_Hk_a_1_z = v->upu_n_m1_z + v->upu_n_c_y*v->upu_q_x - v->upu_n_c_x*v->upu_q_y;
 }
 
 INLINE void stage_upu_A_X(size_t w, size_t j, const real *A, values_upu *v)
 {
-    /* (upu-a_p) acceleration of the connection point without its centripetal part */
+    /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real alpha_x = A[3*w + j];
     const real alpha_y = A[4*w + j];
     const real alpha_z = A[5*w + j];
-    const real t_ddot_x = A[0*w + j];
-    const real upu_a_p_x = t_ddot_x + alpha_y*v->upu_q_z - alpha_z*v->upu_q_y;
-    const real alpha_x = A[3*w + j];
-    const real t_ddot_y = A[1*w + j];
-    const real upu_a_p_y = t_ddot_y + alpha_z*v->upu_q_x - alpha_x*v->upu_q_z;
-    const real t_ddot_z = A[2*w + j];
-    const real upu_a_p_z = t_ddot_z + alpha_x*v->upu_q_y - alpha_y*v->upu_q_x;
-    /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real upu_etad_1_t = v->upu_end_p1_in_axes2_y*(alpha_x*v->axis_x_upu_axes2_x +
+    v->upu_etad_1_t = v->upu_end_p1_in_axes2_y*(alpha_x*v->axis_x_upu_axes2_x +
         alpha_y*v->axis_x_upu_axes2_y + alpha_z*v->axis_x_upu_axes2_z) -
         v->upu_n_m1_in_axes2_y*(alpha_x*v->axis_y_upu_axes2_x + alpha_y*v->axis_y_upu_axes2_y
         + alpha_z*v->axis_y_upu_axes2_z);
-    v->upu_a_p_x = upu_a_p_x;
-    v->upu_a_p_y = upu_a_p_y;
-    v->upu_a_p_z = upu_a_p_z;
-    v->upu_etad_1_t = upu_etad_1_t;
 }
 
 INLINE void stage_upu_V_X(size_t w, size_t j, const real *V, values_upu *v)
@@ -1848,108 +1834,135 @@ INLINE void stage_upu_V_X(size_t w, size_t j, const real *V, values_upu *v)
     const real upu_S_dot_y = t_dot_y + upu_S_dot_t_4;
     const real t_dot_z = V[2*w + j];
     const real upu_S_dot_z = t_dot_z + upu_S_dot_t_5;
-    const real upu_S_dot_in_axes2_x = v->axis_x_upu_axes2_x*upu_S_dot_x +
+    v->upu_S_dot_in_axes2_x = v->axis_x_upu_axes2_x*upu_S_dot_x +
         v->axis_x_upu_axes2_y*upu_S_dot_y + v->axis_x_upu_axes2_z*upu_S_dot_z;
-    /* (upu-qd_2) rate of joint 2 */
-    const real upu_qd_2 = v->inv_upu_q_3*(v->axis_y_upu_axes2_x*upu_S_dot_x +
-        v->axis_y_upu_axes2_y*upu_S_dot_y + v->axis_y_upu_axes2_z*upu_S_dot_z);
-    /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-    const real upu_bias_t = 2*upu_S_dot_in_axes2_x;
-    /* (upu-nd_m1) rate of moment direction 1 */
+    const real upu_S_dot_in_axes2_z = v->axis_z_upu_axes2_x*upu_S_dot_x +
+        v->axis_z_upu_axes2_y*upu_S_dot_y + v->axis_z_upu_axes2_z*upu_S_dot_z;
+    /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
+    const real upu_eta_1 = omega_x*v->upu_n_m1_x + omega_y*v->upu_n_m1_y +
+        omega_z*v->upu_n_m1_z;
+    /* (upu-qd_1) rate of joint 1 */
+    const real upu_qd_1 = v->upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z -
+        upu_eta_1*v->upu_n_c_in_axes2_z);
     const real upu_omega_in_axes2_x = v->axis_x_upu_axes2_x*omega_x +
         v->axis_x_upu_axes2_y*omega_y + v->axis_x_upu_axes2_z*omega_z;
     const real upu_omega_in_axes2_y = v->axis_y_upu_axes2_x*omega_x +
         v->axis_y_upu_axes2_y*omega_y + v->axis_y_upu_axes2_z*omega_z;
+    /* (upu-qd_2) rate of joint 2 */
+    v->upu_qd_2 = v->inv_upu_q_3*(v->axis_y_upu_axes2_x*upu_S_dot_x +
+        v->axis_y_upu_axes2_y*upu_S_dot_y + v->axis_y_upu_axes2_z*upu_S_dot_z);
+    /* (upu-omega_1) angular velocity of link 1 */
+    v->upu_omega_1_in_axes2_x = v->upu_e_1_in_axes2_x*upu_qd_1;
+    v->upu_omega_1_in_axes2_y = -v->upu_c_2*upu_qd_1;
+    /* (upu-W_2) centripetal tensor of link 2 */
+    v->upu_W_2_in_axes2_yz = v->upu_omega_1_in_axes2_y*v->upu_qd_2;
+    v->upu_W_2_in_axes2_xz = v->upu_omega_1_in_axes2_x*v->upu_qd_2;
+    v->upu_W_2_t = v->upu_qd_2*v->upu_qd_2;
+    /* (upu-u_1) centripetal acceleration of the connection point */
+    v->upu_u_1_x = omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4;
+    v->upu_u_1_y = omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5;
+    v->upu_u_1_z = omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3;
+    /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+    const real upu_bias_t = 2*v->upu_S_dot_in_axes2_x;
+    v->upu_bias_t_2 = upu_bias_t*v->upu_omega_1_in_axes2_y;
+    const real upu_bias_in_axes2_z = 2*v->upu_W_2_in_axes2_xz*v->upu_q_3 - v->upu_bias_t_2;
+    /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    v->upu_rel_o_in_axes2_z = v->axis_z_upu_axes2_x*v->upu_u_1_x +
+        v->axis_z_upu_axes2_y*v->upu_u_1_y + v->axis_z_upu_axes2_z*v->upu_u_1_z -
+        upu_bias_in_axes2_z;
+    /* (upu-nd_m1) rate of moment direction 1 */
     const real upu_omega_in_axes2_z = v->axis_z_upu_axes2_x*omega_x +
         v->axis_z_upu_axes2_y*omega_y + v->axis_z_upu_axes2_z*omega_z;
-    /* (upu-qd_1) rate of joint 1 */
-    const real upu_qd_1 = v->upu_w_1_in_axes2_z*(v->axis_z_upu_axes2_x*upu_S_dot_x +
-        v->axis_z_upu_axes2_y*upu_S_dot_y + v->axis_z_upu_axes2_z*upu_S_dot_z +
+    const real upu_nd_m1_t = v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_y -
+        v->upu_end_p1_in_axes2_y*upu_omega_in_axes2_z;
+    const real upu_nd_m1_t_2 = v->upu_n_m1_in_axes2_y*upu_omega_in_axes2_z -
+        v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_x;
+    const real upu_nd_m1_in_axes2_x = -upu_nd_m1_t_2 -
+        v->upu_end_p1_in_axes2_z*v->upu_omega_1_in_axes2_x;
+    const real upu_nd_m1_in_axes2_y = upu_nd_m1_t -
+        v->upu_end_p1_in_axes2_z*v->upu_omega_1_in_axes2_y;
+    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real upu_nu_1_t = v->upu_W_2_in_axes2_xz*v->upu_n_m1_in_axes2_y +
+        v->upu_W_2_in_axes2_yz*v->upu_end_p1_in_axes2_y;
+    const real upu_nu_1_t_2 = upu_omega_in_axes2_z - v->upu_qd_2;
+    const real upu_nu_1_t_3 = upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y -
+        v->upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(v->upu_omega_1_in_axes2_x -
+        upu_omega_in_axes2_x) -
+        upu_nu_1_t_2*(-v->upu_end_p1_in_axes2_y*v->upu_omega_1_in_axes2_y -
+        v->upu_n_m1_in_axes2_y*v->upu_omega_1_in_axes2_x);
+    v->upu_nu_1 = upu_nu_1_t + upu_nu_1_t_3;
+    /* (upu-qdd_2) acceleration of joint 2 */
+    v->upu_qdd_2_t = upu_bias_t*v->upu_qd_2;
+    /* (upu-qd_1) */
+    v->upu_qd_1_2 = v->upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z +
         v->upu_n_c_in_axes2_z*(v->upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
         v->upu_n_m1_in_axes2_y*upu_omega_in_axes2_y));
-    /* (upu-omega_1) angular velocity of link 1 */
-    const real upu_omega_1_in_axes2_x = v->upu_e_1_in_axes2_x*upu_qd_1;
-    const real upu_omega_1_in_axes2_y = -v->upu_c_2*upu_qd_1;
-    /* (upu-W_2) centripetal tensor of link 2 */
-    const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2;
+    /* (upu-omega_1) */
+    v->upu_omega_1_in_axes2_x_2 = v->upu_e_1_in_axes2_x*v->upu_qd_1_2;
+    const real upu_omega_1_in_axes2_y_2 = -v->upu_c_2*v->upu_qd_1_2;
+    /* (upu-W_2) */
+    v->upu_W_2_in_axes2_yz_2 = upu_omega_1_in_axes2_y_2*v->upu_qd_2;
+    v->upu_W_2_in_axes2_xz_2 = v->upu_omega_1_in_axes2_x_2*v->upu_qd_2;
+    v->upu_W_2_t_2 = upu_omega_1_in_axes2_y_2*upu_omega_1_in_axes2_y_2;
+    v->upu_W_2_t_3 = v->upu_W_2_t + v->upu_W_2_t_2;
+    v->upu_W_2_in_axes2_xy_2 = v->upu_omega_1_in_axes2_x_2*upu_omega_1_in_axes2_y_2;
+    /* (upu-bias) */
+    v->upu_bias_t_3 = upu_bias_t*upu_omega_1_in_axes2_y_2;
+    v->upu_bias_in_axes2_z_2 = 2*v->upu_W_2_in_axes2_xz_2*v->upu_q_3 - v->upu_bias_t_3;
     /* (upu-nd_m1) */
-    const real upu_nd_m1_in_axes2_x = v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_x -
-        v->upu_n_m1_in_axes2_y*upu_omega_in_axes2_z -
-        v->upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x;
-    const real upu_nd_m1_in_axes2_y = v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_y -
-        v->upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
-        v->upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
-    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y -
-        upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
-        upu_omega_in_axes2_x) - (upu_omega_in_axes2_z -
-        upu_qd_2)*(-v->upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-        v->upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
-    v->upu_S_dot_t_3 = upu_S_dot_t_3;
-    v->upu_S_dot_t_4 = upu_S_dot_t_4;
-    v->upu_S_dot_t_5 = upu_S_dot_t_5;
-    v->upu_S_dot_x = upu_S_dot_x;
-    v->upu_S_dot_y = upu_S_dot_y;
-    v->upu_S_dot_z = upu_S_dot_z;
-    v->upu_S_dot_in_axes2_x = upu_S_dot_in_axes2_x;
-    v->upu_qd_2 = upu_qd_2;
-    v->upu_bias_t = upu_bias_t;
-    v->upu_omega_in_axes2_x = upu_omega_in_axes2_x;
-    v->upu_omega_in_axes2_y = upu_omega_in_axes2_y;
-    v->upu_omega_in_axes2_z = upu_omega_in_axes2_z;
-    v->upu_omega_1_in_axes2_x = upu_omega_1_in_axes2_x;
-    v->upu_omega_1_in_axes2_y = upu_omega_1_in_axes2_y;
-    v->upu_W_2_in_axes2_xz = upu_W_2_in_axes2_xz;
-    v->upu_nu_1_t_2 = upu_nu_1_t_2;
+    const real upu_nd_m1_in_axes2_x_2 = -upu_nd_m1_t_2 -
+        v->upu_end_p1_in_axes2_z*v->upu_omega_1_in_axes2_x_2;
+    const real upu_nd_m1_in_axes2_y_2 = upu_nd_m1_t -
+        v->upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y_2;
+    /* (upu-nu_1) */
+    const real upu_nu_1_t_4 = -v->upu_W_2_in_axes2_xz_2*v->upu_n_m1_in_axes2_y -
+        v->upu_W_2_in_axes2_yz_2*v->upu_end_p1_in_axes2_y;
+    const real upu_nu_1_t_5 = upu_nd_m1_in_axes2_y_2*(upu_omega_in_axes2_y -
+        upu_omega_1_in_axes2_y_2) - upu_nd_m1_in_axes2_x_2*(v->upu_omega_1_in_axes2_x_2 -
+        upu_omega_in_axes2_x) -
+        upu_nu_1_t_2*(-v->upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y_2 -
+        v->upu_n_m1_in_axes2_y*v->upu_omega_1_in_axes2_x_2);
+    v->upu_nu_1_2 = upu_nu_1_t_5 - upu_nu_1_t_4;
 }
 
-INLINE void stage_upu_A_V_X(size_t w, size_t j, const real *V, values_upu *v)
+INLINE void stage_upu_A_V_X(size_t w, size_t j, const real *s, const real *A, values_upu *v)
 {
     /* (upu-S_ddot) acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real upu_S_ddot_x = omega_y*v->upu_S_dot_t_5 - omega_z*v->upu_S_dot_t_4 +
-        v->upu_a_p_x;
-    const real omega_x = V[3*w + j];
-    const real upu_S_ddot_y = omega_z*v->upu_S_dot_t_3 - omega_x*v->upu_S_dot_t_5 +
-        v->upu_a_p_y;
-    const real upu_S_ddot_z = omega_x*v->upu_S_dot_t_4 - omega_y*v->upu_S_dot_t_3 +
-        v->upu_a_p_z;
-    v->upu_S_ddot_x = upu_S_ddot_x;
-    v->upu_S_ddot_y = upu_S_ddot_y;
-    v->upu_S_ddot_z = upu_S_ddot_z;
-}
-
-INLINE void stage_upu_H_condition(const prepared *m, size_t i, values_upu *v)
-{
-    /* (upu-w_3) force part of reciprocal wrench 3 */
-    const real upu_w_3_t = v->upu_c_1*v->upu_e_1_in_axes2_x;
-    const real upu_w_3_t_2 = v->upu_e_1_in_axes2_x*v->upu_s_1;
-    const real axis_y_upu_axes2_x = m->upu_base_frame_xx[i]*upu_w_3_t -
-        m->upu_base_frame_xz[i]*v->upu_c_2 + m->upu_base_frame_xy[i]*upu_w_3_t_2;
-    const real axis_y_upu_axes2_y = m->upu_base_frame_yx[i]*upu_w_3_t -
-        m->upu_base_frame_yz[i]*v->upu_c_2 + m->upu_base_frame_yy[i]*upu_w_3_t_2;
-    const real axis_y_upu_axes2_z = m->upu_base_frame_zx[i]*upu_w_3_t -
-        m->upu_base_frame_zz[i]*v->upu_c_2 + m->upu_base_frame_zy[i]*upu_w_3_t_2;
-    const real upu_w_3_x = axis_y_upu_axes2_y*v->axis_z_upu_axes2_z -
-        axis_y_upu_axes2_z*v->axis_z_upu_axes2_y;
-    const real upu_w_3_y = axis_y_upu_axes2_z*v->axis_z_upu_axes2_x -
-        axis_y_upu_axes2_x*v->axis_z_upu_axes2_z;
-    const real upu_w_3_z = axis_y_upu_axes2_x*v->axis_z_upu_axes2_y -
-        axis_y_upu_axes2_y*v->axis_z_upu_axes2_x;
-    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-    const real upu_H_a_3_x = v->upu_q_y*upu_w_3_z - v->upu_q_z*upu_w_3_y;
-    const real upu_H_a_3_y = v->upu_q_z*upu_w_3_x - v->upu_q_x*upu_w_3_z;
-    const real upu_H_a_3_z = v->upu_q_x*upu_w_3_y - v->upu_q_y*upu_w_3_x;
-    v->axis_y_upu_axes2_x = axis_y_upu_axes2_x;
-    v->axis_y_upu_axes2_y = axis_y_upu_axes2_y;
-    v->axis_y_upu_axes2_z = axis_y_upu_axes2_z;
-    v->upu_w_3_x = upu_w_3_x;
-    v->upu_w_3_y = upu_w_3_y;
-    v->upu_w_3_z = upu_w_3_z;
-    v->upu_H_a_3_x = upu_H_a_3_x;
-    v->upu_H_a_3_y = upu_H_a_3_y;
-    v->upu_H_a_3_z = upu_H_a_3_z;
+    const real B_p_xy = s[9*w + j];
+    const real B_p_xz = s[10*w + j];
+    const real W_p_t_4 = s[11*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real upu_S_ddot_x = t_ddot_x + B_p_xy*v->upu_q_y + B_p_xz*v->upu_q_z -
+        W_p_t_4*v->upu_q_x;
+    const real B_p_yx = s[12*w + j];
+    const real B_p_yz = s[13*w + j];
+    const real W_p_t_5 = s[14*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real upu_S_ddot_y = t_ddot_y + B_p_yx*v->upu_q_x + B_p_yz*v->upu_q_z -
+        W_p_t_5*v->upu_q_y;
+    const real B_p_zx = s[15*w + j];
+    const real B_p_zy = s[16*w + j];
+    const real W_p_t_6 = s[17*w + j];
+    const real t_ddot_z = A[2*w + j];
+    const real upu_S_ddot_z = t_ddot_z + B_p_zx*v->upu_q_x + B_p_zy*v->upu_q_y -
+        W_p_t_6*v->upu_q_z;
+    v->upu_S_ddot_in_axes2_x = v->axis_x_upu_axes2_x*upu_S_ddot_x +
+        v->axis_x_upu_axes2_y*upu_S_ddot_y + v->axis_x_upu_axes2_z*upu_S_ddot_z;
+    /* (upu-rel) acceleration of the connection point left to the joint accelerations */
+    const real upu_rel_in_axes2_z = v->axis_z_upu_axes2_x*upu_S_ddot_x +
+        v->axis_z_upu_axes2_y*upu_S_ddot_y + v->axis_z_upu_axes2_z*upu_S_ddot_z -
+        v->upu_bias_in_axes2_z_2;
+    /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real upu_etad_1 = v->upu_nu_1_2 - v->upu_etad_1_t;
+    /* (upu-qdd_1) acceleration of joint 1 */
+    v->upu_qdd_1_t = v->upu_w_1_in_axes2_z*(upu_etad_1*v->upu_n_c_in_axes2_z -
+        upu_rel_in_axes2_z);
+    /* (upu-qdd_2) acceleration of joint 2 */
+    v->upu_qdd_2_t_2 = v->axis_y_upu_axes2_x*upu_S_ddot_x + v->axis_y_upu_axes2_y*upu_S_ddot_y
+        + v->axis_y_upu_axes2_z*upu_S_ddot_z - v->upu_qdd_2_t;
+    v->upu_qdd_2_t_3 = v->inv_upu_q_3*v->upu_qdd_2_t_2;
+    v->upu_qdd_2 = v->upu_qdd_2_t_3 - v->upu_W_2_in_axes2_xy_2;
 }
 
 INLINE void stage_upu_M_dynamics(const prepared *m, size_t i, values_upu *v)
@@ -2037,6 +2050,10 @@ INLINE void stage_upu_M_dynamics(const prepared *m, size_t i, values_upu *v)
        balances the leg's inertia and weight along all degrees of freedom */
     const real upu_dalpha_G_m1_in_axes2_x = -upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1_t;
     const real upu_dalpha_G_m1_in_axes2_y = -upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1_t;
+    const real upu_dalpha_G_m1_y = v->axis_x_upu_axes2_y*upu_dalpha_G_m1_in_axes2_x +
+        v->axis_y_upu_axes2_y*upu_dalpha_G_m1_in_axes2_y;
+    const real upu_dalpha_G_m1_z = v->axis_x_upu_axes2_z*upu_dalpha_G_m1_in_axes2_x +
+        v->axis_y_upu_axes2_z*upu_dalpha_G_m1_in_axes2_y;
     /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
        the leg's inertia and weight along all degrees of freedom */
     const real upu_d_G_m1_in_axes2_x = v->upu_c_2*m->upu_h_3_in_spec2_y[i]*upu_m1_w_1_t;
@@ -2045,6 +2062,18 @@ INLINE void stage_upu_M_dynamics(const prepared *m, size_t i, values_upu *v)
         m->upu_h_3_in_spec2_y[i]) -
         v->inv_upu_q_3*m->upu_J_group_2_in_axes2_yz[i]*v->upu_c_2);
     const real upu_d_G_m1_t_2 = upu_d_Gamma_1_in_axes2_z*upu_m1_w_1_t;
+    const real upu_d_G_m1_x = v->axis_x_upu_axes2_x*upu_d_G_m1_in_axes2_x -
+        v->axis_y_upu_axes2_x*upu_d_G_m1_t - v->axis_z_upu_axes2_x*upu_d_G_m1_t_2;
+    const real upu_d_G_m1_y = v->axis_x_upu_axes2_y*upu_d_G_m1_in_axes2_x -
+        v->axis_y_upu_axes2_y*upu_d_G_m1_t - v->axis_z_upu_axes2_y*upu_d_G_m1_t_2;
+    const real upu_d_G_m1_z = v->axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x -
+        v->axis_y_upu_axes2_z*upu_d_G_m1_t - v->axis_z_upu_axes2_z*upu_d_G_m1_t_2;
+    /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real upu_d_G_m_xx = upu_d_G_m1_x*v->upu_n_m1_x;
+    const real upu_d_G_m_xy = upu_d_G_m1_y*v->upu_n_m1_x;
+    const real upu_d_G_m_xz = upu_d_G_m1_z*v->upu_n_m1_x;
+    const real upu_d_G_m_yx = upu_d_G_m1_x*v->upu_n_m1_y;
     /* (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
        and without the mass at the connection point */
     const real upu_dalpha_c_in_axes2_xx = upu_dalpha_alpha_1_t_2*m->upu_h_3_in_spec2_y[i];
@@ -2059,146 +2088,250 @@ INLINE void stage_upu_M_dynamics(const prepared *m, size_t i, values_upu *v)
     const real upu_Q_t_3 = upu_d_Gamma_1_in_axes2_z*v->upu_w_1_in_axes2_z -
         m->upu_link3_mass[i];
     const real upu_Q_t_4 = R(0.5)*upu_Q_t_3;
-    v->upu_dalpha_phi_3_in_axes2_xy = upu_dalpha_phi_3_in_axes2_xy;
-    v->upu_d_phi_3_in_axes2_xy = upu_d_phi_3_in_axes2_xy;
-    v->upu_dalpha_G_in_axes2_zx = upu_dalpha_G_in_axes2_zx;
-    v->upu_dalpha_G_in_axes2_zy = upu_dalpha_G_in_axes2_zy;
-    v->upu_dalpha_G_in_axes2_yx = upu_dalpha_G_in_axes2_yx;
-    v->upu_dalpha_G_in_axes2_yy = upu_dalpha_G_in_axes2_yy;
-    v->upu_d_G_in_axes2_yz = upu_d_G_in_axes2_yz;
-    v->upu_dalpha_G_m1_in_axes2_x = upu_dalpha_G_m1_in_axes2_x;
-    v->upu_dalpha_G_m1_in_axes2_y = upu_dalpha_G_m1_in_axes2_y;
-    v->upu_d_G_m1_in_axes2_x = upu_d_G_m1_in_axes2_x;
-    v->upu_d_G_m1_t = upu_d_G_m1_t;
-    v->upu_d_G_m1_t_2 = upu_d_G_m1_t_2;
-    v->upu_dalpha_c_in_axes2_xx = upu_dalpha_c_in_axes2_xx;
-    v->upu_d_c_in_axes2_xz = upu_d_c_in_axes2_xz;
-    v->upu_Q_t_2 = upu_Q_t_2;
-    v->upu_Q_t_4 = upu_Q_t_4;
+    const real upu_Q_t_5 = v->axis_y_upu_axes2_x*upu_Q_t_2 +
+        v->axis_x_upu_axes2_x*upu_d_phi_3_in_axes2_xy +
+        v->axis_z_upu_axes2_x*upu_d_G_in_axes2_yz;
+    const real upu_Q_t_6 = v->axis_y_upu_axes2_y*upu_Q_t_2 +
+        v->axis_x_upu_axes2_y*upu_d_phi_3_in_axes2_xy +
+        v->axis_z_upu_axes2_y*upu_d_G_in_axes2_yz;
+    const real upu_Q_t_7 = v->axis_y_upu_axes2_z*upu_Q_t_2 +
+        v->axis_x_upu_axes2_z*upu_d_phi_3_in_axes2_xy +
+        v->axis_z_upu_axes2_z*upu_d_G_in_axes2_yz;
+    const real upu_Q_t_8 = v->axis_z_upu_axes2_x*upu_Q_t_4 -
+        v->axis_x_upu_axes2_x*upu_d_c_in_axes2_xz;
+    const real upu_Q_t_9 = v->axis_z_upu_axes2_y*upu_Q_t_4 -
+        v->axis_x_upu_axes2_y*upu_d_c_in_axes2_xz;
+    const real upu_Q_t_10 = v->axis_z_upu_axes2_z*upu_Q_t_4 -
+        v->axis_x_upu_axes2_z*upu_d_c_in_axes2_xz;
+    const real upu_Q_t_11 = v->axis_y_upu_axes2_x*upu_Q_t_5 + v->axis_z_upu_axes2_x*upu_Q_t_8;
+    v->upu_Q_xx = m->upu_link3_mass[i] + 2*upu_Q_t_11;
+    v->upu_Q_xy = v->axis_y_upu_axes2_x*upu_Q_t_6 + v->axis_y_upu_axes2_y*upu_Q_t_5 +
+        v->axis_z_upu_axes2_x*upu_Q_t_9 + v->axis_z_upu_axes2_y*upu_Q_t_8;
+    v->upu_Q_xz = v->axis_y_upu_axes2_x*upu_Q_t_7 + v->axis_y_upu_axes2_z*upu_Q_t_5 +
+        v->axis_z_upu_axes2_x*upu_Q_t_10 + v->axis_z_upu_axes2_z*upu_Q_t_8;
+    const real upu_Q_t_12 = v->axis_y_upu_axes2_y*upu_Q_t_6 + v->axis_z_upu_axes2_y*upu_Q_t_9;
+    v->upu_Q_yy = m->upu_link3_mass[i] + 2*upu_Q_t_12;
+    v->upu_Q_yz = v->axis_y_upu_axes2_y*upu_Q_t_7 + v->axis_y_upu_axes2_z*upu_Q_t_6 +
+        v->axis_z_upu_axes2_y*upu_Q_t_10 + v->axis_z_upu_axes2_z*upu_Q_t_9;
+    const real upu_Q_t_13 = v->axis_y_upu_axes2_z*upu_Q_t_7 +
+        v->axis_z_upu_axes2_z*upu_Q_t_10;
+    v->upu_Q_zz = m->upu_link3_mass[i] + 2*upu_Q_t_13;
+    /* (M_ta) coupling block of M */
+    const real upu_M_ta_t = v->axis_x_upu_axes2_x*upu_dalpha_c_in_axes2_xx -
+        v->axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yx -
+        v->axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zx;
+    const real upu_M_ta_t_2 = v->axis_x_upu_axes2_y*upu_dalpha_c_in_axes2_xx -
+        v->axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yx -
+        v->axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zx;
+    const real upu_M_ta_t_3 = v->axis_x_upu_axes2_z*upu_dalpha_c_in_axes2_xx -
+        v->axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yx -
+        v->axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zx;
+    const real upu_M_ta_t_4 = -v->axis_x_upu_axes2_x*upu_dalpha_phi_3_in_axes2_xy -
+        v->axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yy -
+        v->axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zy;
+    const real upu_M_ta_t_5 = -v->axis_x_upu_axes2_y*upu_dalpha_phi_3_in_axes2_xy -
+        v->axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yy -
+        v->axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zy;
+    const real upu_M_ta_t_6 = -v->axis_x_upu_axes2_z*upu_dalpha_phi_3_in_axes2_xy -
+        v->axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yy -
+        v->axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zy;
+    const real upu_M_ta_t_7 = v->upu_Q_xy*v->upu_q_z;
+    const real upu_M_ta_t_8 = v->upu_Q_xz*v->upu_q_y;
+    const real upu_M_ta_t_9 = v->upu_Q_yz*v->upu_q_x;
+    v->upu_M_ta_t_10 = upu_M_ta_t_8 - v->axis_x_upu_axes2_x*upu_M_ta_t -
+        v->axis_y_upu_axes2_x*upu_M_ta_t_4 - upu_M_ta_t_7;
+    v->upu_M_ta_t_11 = v->upu_Q_xx*v->upu_q_z - v->axis_x_upu_axes2_y*upu_M_ta_t -
+        v->axis_y_upu_axes2_y*upu_M_ta_t_4 - v->upu_Q_xz*v->upu_q_x;
+    v->upu_M_ta_t_12 = v->upu_Q_xy*v->upu_q_x - v->axis_x_upu_axes2_z*upu_M_ta_t -
+        v->axis_y_upu_axes2_z*upu_M_ta_t_4 - v->upu_Q_xx*v->upu_q_y;
+    v->upu_M_ta_t_13 = v->upu_Q_yz*v->upu_q_y - v->axis_x_upu_axes2_x*upu_M_ta_t_2 -
+        v->axis_y_upu_axes2_x*upu_M_ta_t_5 - v->upu_Q_yy*v->upu_q_z;
+    v->upu_M_ta_t_14 = upu_M_ta_t_7 - v->axis_x_upu_axes2_y*upu_M_ta_t_2 -
+        v->axis_y_upu_axes2_y*upu_M_ta_t_5 - upu_M_ta_t_9;
+    v->upu_M_ta_t_15 = v->upu_Q_yy*v->upu_q_x - v->axis_x_upu_axes2_z*upu_M_ta_t_2 -
+        v->axis_y_upu_axes2_z*upu_M_ta_t_5 - v->upu_Q_xy*v->upu_q_y;
+    v->upu_M_ta_t_16 = v->upu_Q_zz*v->upu_q_y - v->axis_x_upu_axes2_x*upu_M_ta_t_3 -
+        v->axis_y_upu_axes2_x*upu_M_ta_t_6 - v->upu_Q_yz*v->upu_q_z;
+    v->upu_M_ta_t_17 = v->upu_Q_xz*v->upu_q_z - v->axis_x_upu_axes2_y*upu_M_ta_t_3 -
+        v->axis_y_upu_axes2_y*upu_M_ta_t_6 - v->upu_Q_zz*v->upu_q_x;
+    v->upu_M_ta_t_18 = upu_M_ta_t_9 - v->axis_x_upu_axes2_z*upu_M_ta_t_3 -
+        v->axis_y_upu_axes2_z*upu_M_ta_t_6 - upu_M_ta_t_8;
+    /* (M_aa) rotational block of M */
+    v->upu_M_aa_t = upu_d_G_m_xz*v->upu_q_y - upu_d_G_m_xy*v->upu_q_z +
+        v->upu_n_m1_x*(v->axis_x_upu_axes2_x*upu_dalpha_G_m1_in_axes2_x +
+        v->axis_y_upu_axes2_x*upu_dalpha_G_m1_in_axes2_y) + v->upu_M_ta_t_16*v->upu_q_y -
+        v->upu_M_ta_t_13*v->upu_q_z;
+    v->upu_M_aa_t_2 = upu_d_G_m_xx*v->upu_q_z - upu_d_G_m_xz*v->upu_q_x +
+        upu_dalpha_G_m1_y*v->upu_n_m1_x + v->upu_M_ta_t_17*v->upu_q_y -
+        v->upu_M_ta_t_14*v->upu_q_z;
+    v->upu_M_aa_t_3 = upu_d_G_m_xy*v->upu_q_x - upu_d_G_m_xx*v->upu_q_y +
+        upu_dalpha_G_m1_z*v->upu_n_m1_x + v->upu_M_ta_t_18*v->upu_q_y -
+        v->upu_M_ta_t_15*v->upu_q_z;
+    v->upu_M_aa_t_4 = upu_d_G_m_yx*v->upu_q_z - upu_d_G_m1_z*v->upu_n_m1_y*v->upu_q_x +
+        upu_dalpha_G_m1_y*v->upu_n_m1_y + v->upu_M_ta_t_11*v->upu_q_z -
+        v->upu_M_ta_t_17*v->upu_q_x;
+    v->upu_M_aa_t_5 = upu_d_G_m1_y*v->upu_n_m1_y*v->upu_q_x - upu_d_G_m_yx*v->upu_q_y +
+        upu_dalpha_G_m1_z*v->upu_n_m1_y + v->upu_M_ta_t_12*v->upu_q_z -
+        v->upu_M_ta_t_18*v->upu_q_x;
+    v->upu_M_aa_t_6 = upu_d_G_m1_y*v->upu_n_m1_z*v->upu_q_x -
+        upu_d_G_m1_x*v->upu_n_m1_z*v->upu_q_y + upu_dalpha_G_m1_z*v->upu_n_m1_z +
+        v->upu_M_ta_t_15*v->upu_q_x - v->upu_M_ta_t_12*v->upu_q_y;
 }
 
-INLINE void stage_upu_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_upu *v)
+INLINE void stage_upu_Z_dynamics(const prepared *m, size_t i, values_upu *v)
 {
-    /* (upu-u_1) centripetal acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real upu_u_1_x = omega_y*v->upu_S_dot_t_5 - omega_z*v->upu_S_dot_t_4;
-    const real omega_x = V[3*w + j];
-    const real upu_u_1_y = omega_z*v->upu_S_dot_t_3 - omega_x*v->upu_S_dot_t_5;
-    const real upu_u_1_z = omega_x*v->upu_S_dot_t_4 - omega_y*v->upu_S_dot_t_3;
+    /* (upu-W_2) centripetal tensor of link 2 */
+    const real upu_W_2_in_axes2_xy = v->upu_omega_1_in_axes2_x*v->upu_omega_1_in_axes2_y;
+    /* (upu-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real upu_qdd_1_o_t = v->upu_w_1_in_axes2_z*(v->upu_n_c_in_axes2_z*v->upu_nu_1 -
+        v->upu_rel_o_in_axes2_z);
+    /* (upu-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real upu_alpha_1_o_t = v->upu_e_1_in_axes2_x*upu_qdd_1_o_t;
+    const real upu_alpha_1_o_in_axes2_y = v->upu_c_2*upu_qdd_1_o_t;
+    /* (upu-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real upu_alpha_2_o_in_axes2_x = v->upu_W_2_in_axes2_yz - upu_alpha_1_o_t;
+    const real upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - v->upu_W_2_in_axes2_xz;
     /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real upu_B_2_o_t = v->upu_bias_t*v->upu_qd_2;
-    const real upu_B_2_o_t_2 = v->axis_y_upu_axes2_x*upu_u_1_x +
-        v->axis_y_upu_axes2_y*upu_u_1_y + v->axis_y_upu_axes2_z*upu_u_1_z - upu_B_2_o_t;
-    const real upu_B_2_o_in_axes2_yx = v->inv_upu_q_3*upu_B_2_o_t_2;
+    const real upu_B_2_o_t = v->axis_y_upu_axes2_x*v->upu_u_1_x +
+        v->axis_y_upu_axes2_y*v->upu_u_1_y + v->axis_y_upu_axes2_z*v->upu_u_1_z -
+        v->upu_qdd_2_t;
+    const real upu_B_2_o_in_axes2_yx = v->inv_upu_q_3*upu_B_2_o_t;
+    const real upu_B_2_o_in_axes2_xy = 2*upu_W_2_in_axes2_xy - upu_B_2_o_in_axes2_yx;
+    const real upu_B_2_o_in_axes2_zx = v->upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
+    const real upu_B_2_o_in_axes2_zy = v->upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
     /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real upu_acc_3_o_t = m->upu_acc_3_t[i]*v->upu_c_1 + m->upu_acc_3_t_2[i]*v->upu_s_1;
-    const real upu_g_in_axes2_x = upu_acc_3_o_t*v->upu_c_2 +
-        m->upu_acc_3_t_3[i]*v->upu_e_1_in_axes2_x;
-    const real upu_g_in_axes2_y = upu_acc_3_o_t*v->upu_e_1_in_axes2_x -
-        m->upu_acc_3_t_3[i]*v->upu_c_2;
-    const real upu_acc_3_o_in_axes2_x = v->axis_x_upu_axes2_x*upu_u_1_x - upu_g_in_axes2_x +
-        v->axis_x_upu_axes2_y*upu_u_1_y + v->axis_x_upu_axes2_z*upu_u_1_z;
-    const real upu_acc_3_o_in_axes2_y = upu_B_2_o_t - upu_g_in_axes2_y + upu_B_2_o_t_2;
+    const real upu_acc_3_o_in_axes2_x = v->axis_x_upu_axes2_x*v->upu_u_1_x -
+        v->upu_g_in_axes2_x + v->axis_x_upu_axes2_y*v->upu_u_1_y +
+        v->axis_x_upu_axes2_z*v->upu_u_1_z;
+    const real upu_acc_3_o_in_axes2_y = v->upu_qdd_2_t - v->upu_g_in_axes2_y + upu_B_2_o_t;
+    const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v->upu_q_3 - v->upu_g_in_axes2_z
+        - v->upu_bias_t_2;
     /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
-    const real upu_f_3_o_t_3 = v->upu_qd_2*v->upu_qd_2;
-    v->upu_u_1_x = upu_u_1_x;
-    v->upu_u_1_y = upu_u_1_y;
-    v->upu_u_1_z = upu_u_1_z;
-    v->upu_B_2_o_in_axes2_yx = upu_B_2_o_in_axes2_yx;
-    v->upu_g_in_axes2_x = upu_g_in_axes2_x;
-    v->upu_g_in_axes2_y = upu_g_in_axes2_y;
-    v->upu_acc_3_o_in_axes2_x = upu_acc_3_o_in_axes2_x;
-    v->upu_acc_3_o_in_axes2_y = upu_acc_3_o_in_axes2_y;
-    v->upu_f_3_o_t_3 = upu_f_3_o_t_3;
+    const real upu_f_3_o_t = v->upu_omega_1_in_axes2_x*v->upu_omega_1_in_axes2_x;
+    const real upu_f_3_o_t_2 = v->upu_omega_1_in_axes2_y*v->upu_omega_1_in_axes2_y;
+    const real upu_f_3_o_in_axes2_x = upu_acc_3_o_in_axes2_x*m->upu_link3_mass[i] -
+        upu_B_2_o_in_axes2_xy*m->upu_h_3_in_spec2_z[i] -
+        m->upu_h_3_in_spec2_x[i]*(v->upu_W_2_t + upu_f_3_o_t_2) +
+        upu_alpha_1_o_in_axes2_y*m->upu_h_3_in_spec2_y[i];
+    const real upu_f_3_o_in_axes2_y = upu_B_2_o_in_axes2_yx*m->upu_h_3_in_spec2_x[i] +
+        upu_acc_3_o_in_axes2_y*m->upu_link3_mass[i] + m->upu_h_3_in_spec2_z[i]*(v->upu_W_2_t +
+        upu_f_3_o_t) + upu_alpha_1_o_t*m->upu_h_3_in_spec2_y[i];
+    const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*m->upu_h_3_in_spec2_x[i] -
+        m->upu_h_3_in_spec2_y[i]*(upu_f_3_o_t + upu_f_3_o_t_2) -
+        upu_B_2_o_in_axes2_zy*m->upu_h_3_in_spec2_z[i] +
+        upu_acc_3_o_in_axes2_z*m->upu_link3_mass[i];
+    /* (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real upu_mu_2_o_in_axes2_x = v->upu_mu_2_t +
+        upu_B_2_o_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i] -
+        upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] +
+        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_o_t_2 - v->upu_W_2_t) -
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_t +
+        upu_B_2_o_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] -
+        upu_B_2_o_in_axes2_zx*m->upu_J_group_2_in_axes2_xy[i] -
+        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_z[i];
+    const real upu_mu_2_o_in_axes2_y = upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_y[i] -
+        v->upu_mu_2_t_2 - upu_B_2_o_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] -
+        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_o_t - v->upu_W_2_t) +
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_in_axes2_y +
+        upu_B_2_o_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] -
+        upu_B_2_o_in_axes2_zx*m->upu_Sigma_2_in_axes2_xx[i] -
+        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_x[i];
+    const real upu_mu_2_o_in_axes2_z = upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_z[i] -
+        v->upu_mu_2_t_3 + upu_B_2_o_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
+        upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_x[i] +
+        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_o_t - upu_f_3_o_t_2) -
+        upu_B_2_o_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] +
+        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_o_in_axes2_y -
+        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_o_t;
+    /* (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*v->upu_q_3;
+    const real upu_N_2_o_t = upu_N_2_o_in_axes2_y*v->upu_c_2 -
+        v->upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x;
+    /* (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y +
+        v->inv_upu_q_3*upu_mu_2_o_in_axes2_z;
+    /* (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real upu_G_m1_o = upu_N_2_o_t*v->upu_n_c_in_axes2_z*v->upu_w_1_in_axes2_z;
+    /* (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real upu_G_m_o_in_axes2_y = upu_G_m1_o*v->upu_n_m1_in_axes2_y;
+    /* (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real upu_c_o_in_axes2_z = upu_N_2_o_t*v->upu_w_1_in_axes2_z;
+    /* (upu-c_m_o) remainder of: moment of the leg on the platform without actuation */
+    const real upu_c_m_o_in_axes2_x = upu_G_m1_o*v->upu_end_p1_in_axes2_y;
+    /* (upu-U) velocity and gravity terms of the leg force */
+    v->upu_U_x = v->axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x +
+        v->axis_y_upu_axes2_x*upu_G_o_in_axes2_y - v->axis_z_upu_axes2_x*upu_c_o_in_axes2_z;
+    v->upu_U_y = v->axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x +
+        v->axis_y_upu_axes2_y*upu_G_o_in_axes2_y - v->axis_z_upu_axes2_y*upu_c_o_in_axes2_z;
+    v->upu_U_z = v->axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x +
+        v->axis_y_upu_axes2_z*upu_G_o_in_axes2_y - v->axis_z_upu_axes2_z*upu_c_o_in_axes2_z;
+    /* (Z_a) rotational part of Z */
+    v->upu_Z_a_t = v->upu_U_z*v->upu_q_y - v->upu_U_y*v->upu_q_z +
+        v->axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y -
+        v->axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x;
+    v->upu_Z_a_t_2 = v->upu_U_x*v->upu_q_z - v->upu_U_z*v->upu_q_x +
+        v->axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y -
+        v->axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x;
+    v->upu_Z_a_t_3 = v->upu_U_y*v->upu_q_x - v->upu_U_x*v->upu_q_y +
+        v->axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y -
+        v->axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x;
 }
 
 INLINE void stage_upu_legs_required(const prepared *m, size_t i, values_upu *v)
 {
-    /* (upu-W_2) centripetal tensor of link 2 */
-    const real upu_W_2_in_axes2_yz = v->upu_omega_1_in_axes2_y*v->upu_qd_2;
-    const real upu_W_2_in_axes2_xy = v->upu_omega_1_in_axes2_x*v->upu_omega_1_in_axes2_y;
-    /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-    const real upu_bias_t_2 = v->upu_bias_t*v->upu_omega_1_in_axes2_y;
-    const real upu_bias_in_axes2_z = 2*v->upu_W_2_in_axes2_xz*v->upu_q_3 - upu_bias_t_2;
-    /* (upu-rel) acceleration of the connection point left to the joint accelerations */
-    const real upu_rel_in_axes2_z = v->axis_z_upu_axes2_x*v->upu_S_ddot_x +
-        v->axis_z_upu_axes2_y*v->upu_S_ddot_y + v->axis_z_upu_axes2_z*v->upu_S_ddot_z -
-        upu_bias_in_axes2_z;
-    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real upu_nu_1_t = -v->upu_W_2_in_axes2_xz*v->upu_n_m1_in_axes2_y -
-        upu_W_2_in_axes2_yz*v->upu_end_p1_in_axes2_y;
-    const real upu_nu_1 = v->upu_nu_1_t_2 - upu_nu_1_t;
-    /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real upu_etad_1 = upu_nu_1 - v->upu_etad_1_t;
-    /* (upu-qdd_1) acceleration of joint 1 */
-    const real upu_qdd_1_t = v->upu_w_1_in_axes2_z*(upu_etad_1*v->upu_n_c_in_axes2_z -
-        upu_rel_in_axes2_z);
     /* (upu-alpha_1) angular acceleration of link 1 */
-    const real upu_alpha_1_t = v->upu_e_1_in_axes2_x*upu_qdd_1_t;
-    const real upu_alpha_1_in_axes2_y = v->upu_c_2*upu_qdd_1_t;
+    const real upu_alpha_1_t = v->upu_e_1_in_axes2_x*v->upu_qdd_1_t;
+    const real upu_alpha_1_in_axes2_y = v->upu_c_2*v->upu_qdd_1_t;
     /* (upu-alpha_2) angular acceleration of link 2 */
-    const real upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_t;
-    const real upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - v->upu_W_2_in_axes2_xz;
+    const real upu_alpha_2_in_axes2_x = v->upu_W_2_in_axes2_yz_2 - upu_alpha_1_t;
+    const real upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - v->upu_W_2_in_axes2_xz_2;
     /* (upu-B_2) acceleration tensor of link 2 */
-    const real upu_B_2_t = v->upu_bias_t*v->upu_qd_2;
-    const real upu_B_2_t_2 = v->axis_y_upu_axes2_x*v->upu_S_ddot_x +
-        v->axis_y_upu_axes2_y*v->upu_S_ddot_y + v->axis_y_upu_axes2_z*v->upu_S_ddot_z -
-        upu_B_2_t;
-    const real upu_B_2_in_axes2_yx = v->inv_upu_q_3*upu_B_2_t_2;
-    const real upu_B_2_in_axes2_xy = 2*upu_W_2_in_axes2_xy - upu_B_2_in_axes2_yx;
-    const real upu_B_2_in_axes2_zx = v->upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y;
-    const real upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x;
+    const real upu_B_2_in_axes2_xy = v->upu_W_2_in_axes2_xy_2 - v->upu_qdd_2;
+    const real upu_B_2_in_axes2_zx = v->upu_W_2_in_axes2_xz_2 - upu_alpha_2_in_axes2_y;
+    const real upu_B_2_in_axes2_zy = v->upu_W_2_in_axes2_yz_2 + upu_alpha_2_in_axes2_x;
     /* (upu-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real upu_acc_3_t_4 = m->upu_acc_3_t[i]*v->upu_c_1 + m->upu_acc_3_t_2[i]*v->upu_s_1;
-    const real upu_g_in_axes2_x = m->upu_acc_3_t_3[i]*v->upu_e_1_in_axes2_x +
-        upu_acc_3_t_4*v->upu_c_2;
-    const real upu_g_in_axes2_y = upu_acc_3_t_4*v->upu_e_1_in_axes2_x -
-        m->upu_acc_3_t_3[i]*v->upu_c_2;
-    const real upu_acc_3_in_axes2_x = v->axis_x_upu_axes2_x*v->upu_S_ddot_x - upu_g_in_axes2_x
-        + v->axis_x_upu_axes2_y*v->upu_S_ddot_y + v->axis_x_upu_axes2_z*v->upu_S_ddot_z;
-    const real upu_acc_3_in_axes2_y = upu_B_2_t - upu_g_in_axes2_y + upu_B_2_t_2;
+    const real upu_acc_3_in_axes2_x = v->upu_S_ddot_in_axes2_x - v->upu_g_in_axes2_x;
+    const real upu_acc_3_in_axes2_y = v->upu_qdd_2_t - v->upu_g_in_axes2_y + v->upu_qdd_2_t_2;
     const real upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*v->upu_q_3 - v->upu_g_in_axes2_z -
-        upu_bias_t_2;
+        v->upu_bias_t_3;
     /* (upu-f_3) inertia force of link 3 less its weight */
-    const real upu_f_3_t = v->upu_qd_2*v->upu_qd_2;
-    const real upu_f_3_t_2 = v->upu_omega_1_in_axes2_x*v->upu_omega_1_in_axes2_x;
-    const real upu_f_3_t_3 = v->upu_omega_1_in_axes2_y*v->upu_omega_1_in_axes2_y;
+    const real upu_f_3_t = v->upu_omega_1_in_axes2_x_2*v->upu_omega_1_in_axes2_x_2;
     const real upu_f_3_in_axes2_x = upu_acc_3_in_axes2_x*m->upu_link3_mass[i] -
-        upu_B_2_in_axes2_xy*m->upu_h_3_in_spec2_z[i] - m->upu_h_3_in_spec2_x[i]*(upu_f_3_t +
-        upu_f_3_t_3) + upu_alpha_1_in_axes2_y*m->upu_h_3_in_spec2_y[i];
-    const real upu_f_3_in_axes2_y = upu_B_2_in_axes2_yx*m->upu_h_3_in_spec2_x[i] +
-        upu_acc_3_in_axes2_y*m->upu_link3_mass[i] + m->upu_h_3_in_spec2_z[i]*(upu_f_3_t +
-        upu_f_3_t_2) + upu_alpha_1_t*m->upu_h_3_in_spec2_y[i];
+        v->upu_W_2_t_3*m->upu_h_3_in_spec2_x[i] - upu_B_2_in_axes2_xy*m->upu_h_3_in_spec2_z[i]
+        + upu_alpha_1_in_axes2_y*m->upu_h_3_in_spec2_y[i];
+    const real upu_f_3_in_axes2_y = upu_acc_3_in_axes2_y*m->upu_link3_mass[i] +
+        m->upu_h_3_in_spec2_x[i]*v->upu_qdd_2_t_3 + m->upu_h_3_in_spec2_z[i]*(v->upu_W_2_t +
+        upu_f_3_t) + upu_alpha_1_t*m->upu_h_3_in_spec2_y[i];
     const real upu_f_3_in_axes2_z = upu_B_2_in_axes2_zx*m->upu_h_3_in_spec2_x[i] -
-        m->upu_h_3_in_spec2_y[i]*(upu_f_3_t_2 + upu_f_3_t_3) -
+        m->upu_h_3_in_spec2_y[i]*(v->upu_W_2_t_2 + upu_f_3_t) -
         upu_B_2_in_axes2_zy*m->upu_h_3_in_spec2_z[i] +
         upu_acc_3_in_axes2_z*m->upu_link3_mass[i];
     /* (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real upu_mu_2_in_axes2_x = v->upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] +
-        upu_g_in_axes2_y*m->upu_h_2_in_spec2_y[i] +
-        upu_B_2_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i] -
+    const real upu_mu_2_in_axes2_x = v->upu_mu_2_t +
+        m->upu_J_group_2_in_axes2_xz[i]*v->upu_qdd_2_t_3 -
         upu_acc_3_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
-        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_t - upu_f_3_t_3) -
+        m->upu_J_group_2_in_axes2_yz[i]*(v->upu_W_2_t - v->upu_W_2_t_2) -
         m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_t +
         upu_B_2_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] -
         upu_B_2_in_axes2_zx*m->upu_J_group_2_in_axes2_xy[i] -
         upu_acc_3_in_axes2_z*m->upu_h_3_in_spec2_z[i];
-    const real upu_mu_2_in_axes2_y = v->upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i] -
-        upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i] +
-        upu_acc_3_in_axes2_x*m->upu_h_3_in_spec2_y[i] +
-        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_t - upu_f_3_t_2) -
+    const real upu_mu_2_in_axes2_y = upu_acc_3_in_axes2_x*m->upu_h_3_in_spec2_y[i] -
+        v->upu_mu_2_t_2 + m->upu_J_group_2_in_axes2_xz[i]*(v->upu_W_2_t - upu_f_3_t) -
         upu_B_2_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] +
         m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_in_axes2_y +
         upu_B_2_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] -
         upu_B_2_in_axes2_zx*m->upu_Sigma_2_in_axes2_xx[i] -
         upu_acc_3_in_axes2_z*m->upu_h_3_in_spec2_x[i];
     const real upu_mu_2_in_axes2_z = upu_acc_3_in_axes2_x*m->upu_h_3_in_spec2_z[i] -
-        upu_g_in_axes2_x*m->upu_h_2_in_spec2_z[i] - upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i]
-        + upu_B_2_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
+        v->upu_mu_2_t_3 + m->upu_Sigma_2_in_axes2_xx[i]*v->upu_qdd_2_t_3 +
         upu_acc_3_in_axes2_y*m->upu_h_3_in_spec2_x[i] +
-        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_t_2 - upu_f_3_t_3) -
+        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_t - v->upu_W_2_t_2) -
         upu_B_2_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] +
         m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_in_axes2_y -
         m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_t;
@@ -2219,26 +2352,27 @@ INLINE void stage_upu_legs_required(const prepared *m, size_t i, values_upu *v)
     /* (upu-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real upu_c_in_axes2_z = upu_N_2_t*v->upu_w_1_in_axes2_z;
-    const real upu_c_x = v->axis_z_upu_axes2_x*upu_c_in_axes2_z -
+    v->upu_c_x = v->axis_z_upu_axes2_x*upu_c_in_axes2_z -
         v->axis_x_upu_axes2_x*upu_f_3_in_axes2_x - v->axis_y_upu_axes2_x*upu_G_in_axes2_y;
-    const real upu_c_y = v->axis_z_upu_axes2_y*upu_c_in_axes2_z -
+    v->upu_c_y = v->axis_z_upu_axes2_y*upu_c_in_axes2_z -
         v->axis_x_upu_axes2_y*upu_f_3_in_axes2_x - v->axis_y_upu_axes2_y*upu_G_in_axes2_y;
-    const real upu_c_z = v->axis_z_upu_axes2_z*upu_c_in_axes2_z -
+    v->upu_c_z = v->axis_z_upu_axes2_z*upu_c_in_axes2_z -
         v->axis_x_upu_axes2_z*upu_f_3_in_axes2_x - v->axis_y_upu_axes2_z*upu_G_in_axes2_y;
     /* (upu-c_m) moment of the leg on the platform without actuation */
     const real upu_c_m_in_axes2_x = upu_G_m1*v->upu_end_p1_in_axes2_y;
-    v->upu_G_m_in_axes2_y = upu_G_m_in_axes2_y;
-    v->upu_c_x = upu_c_x;
-    v->upu_c_y = upu_c_y;
-    v->upu_c_z = upu_c_z;
-    v->upu_c_m_in_axes2_x = upu_c_m_in_axes2_x;
+    v->upu_c_m_x = v->axis_x_upu_axes2_x*upu_c_m_in_axes2_x -
+        v->axis_y_upu_axes2_x*upu_G_m_in_axes2_y;
+    v->upu_c_m_y = v->axis_x_upu_axes2_y*upu_c_m_in_axes2_x -
+        v->axis_y_upu_axes2_y*upu_G_m_in_axes2_y;
+    v->upu_c_m_z = v->axis_x_upu_axes2_z*upu_c_m_in_axes2_x -
+        v->axis_y_upu_axes2_z*upu_G_m_in_axes2_y;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2250,30 +2384,28 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
-    stage_V_X(w, k, V, v);
-    stage_M_dynamics(m, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
-    s[18*w + k] = v->Z_p_x;
-    s[19*w + k] = v->Z_p_y;
-    s[20*w + k] = v->Z_p_z;
-    s[21*w + k] = v->Z_q_x;
-    s[22*w + k] = v->Z_q_y;
-    s[23*w + k] = v->Z_q_z;
+    s[27*w + k] = v->Z_p_x;
+    s[28*w + k] = v->Z_p_y;
+    s[29*w + k] = v->Z_p_z;
+    s[30*w + k] = v->Z_q_x;
+    s[31*w + k] = v->Z_q_y;
+    s[32*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2283,316 +2415,64 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_V_X(w, j, V, &v);
     stage_upu_M_dynamics(m, i, &v);
-    stage_upu_Z_dynamics(m, w, i, j, V, &v);
-    /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real upu_n_m1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y;
-    const real upu_n_m1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y;
-    const real upu_n_m1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y;
-    /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
-    const real omega_x = V[3*w + j];
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real upu_eta_1 = omega_x*upu_n_m1_x + omega_y*upu_n_m1_y + omega_z*upu_n_m1_z;
-    /* (upu-qd_1) rate of joint 1 */
-    const real upu_qd_1 = v.upu_w_1_in_axes2_z*(v.axis_z_upu_axes2_x*v.upu_S_dot_x +
-        v.axis_z_upu_axes2_y*v.upu_S_dot_y + v.axis_z_upu_axes2_z*v.upu_S_dot_z -
-        upu_eta_1*v.upu_n_c_in_axes2_z);
-    /* (upu-omega_1) angular velocity of link 1 */
-    const real upu_omega_1_in_axes2_x = v.upu_e_1_in_axes2_x*upu_qd_1;
-    const real upu_omega_1_in_axes2_y = -v.upu_c_2*upu_qd_1;
-    /* (upu-W_2) centripetal tensor of link 2 */
-    const real upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*v.upu_qd_2;
-    const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*v.upu_qd_2;
-    const real upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y;
-    /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-    const real upu_bias_t_2 = v.upu_bias_t*upu_omega_1_in_axes2_y;
-    const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*v.upu_q_3 - upu_bias_t_2;
-    /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real upu_rel_o_in_axes2_z = v.axis_z_upu_axes2_x*v.upu_u_1_x +
-        v.axis_z_upu_axes2_y*v.upu_u_1_y + v.axis_z_upu_axes2_z*v.upu_u_1_z -
-        upu_bias_in_axes2_z;
-    /* (upu-nd_m1) rate of moment direction 1 */
-    const real upu_nd_m1_in_axes2_x = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_x -
-        v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z -
-        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x;
-    const real upu_nd_m1_in_axes2_y = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_y -
-        v.upu_end_p1_in_axes2_y*v.upu_omega_in_axes2_z -
-        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
-    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real upu_nu_1_t = upu_W_2_in_axes2_xz*v.upu_n_m1_in_axes2_y +
-        upu_W_2_in_axes2_yz*v.upu_end_p1_in_axes2_y;
-    const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(v.upu_omega_in_axes2_y -
-        upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
-        v.upu_omega_in_axes2_x) - (v.upu_omega_in_axes2_z -
-        v.upu_qd_2)*(-v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-        v.upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
-    const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
-    /* (upu-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real upu_qdd_1_o_t = v.upu_w_1_in_axes2_z*(v.upu_n_c_in_axes2_z*upu_nu_1 -
-        upu_rel_o_in_axes2_z);
-    /* (upu-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real upu_alpha_1_o_t = v.upu_e_1_in_axes2_x*upu_qdd_1_o_t;
-    const real upu_alpha_1_o_in_axes2_y = v.upu_c_2*upu_qdd_1_o_t;
-    /* (upu-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t;
-    const real upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz;
-    /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real upu_B_2_o_in_axes2_xy = 2*upu_W_2_in_axes2_xy - v.upu_B_2_o_in_axes2_yx;
-    const real upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
-    const real upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
-    /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v.upu_q_3 - v.upu_g_in_axes2_z -
-        upu_bias_t_2;
-    /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
-    const real upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
-    const real upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
-    const real upu_f_3_o_in_axes2_x = v.upu_acc_3_o_in_axes2_x*m->upu_link3_mass[i] -
-        upu_B_2_o_in_axes2_xy*m->upu_h_3_in_spec2_z[i] -
-        m->upu_h_3_in_spec2_x[i]*(v.upu_f_3_o_t_3 + upu_f_3_o_t_2) +
-        upu_alpha_1_o_in_axes2_y*m->upu_h_3_in_spec2_y[i];
-    const real upu_f_3_o_in_axes2_y = v.upu_B_2_o_in_axes2_yx*m->upu_h_3_in_spec2_x[i] +
-        v.upu_acc_3_o_in_axes2_y*m->upu_link3_mass[i] +
-        m->upu_h_3_in_spec2_z[i]*(v.upu_f_3_o_t_3 + upu_f_3_o_t) +
-        upu_alpha_1_o_t*m->upu_h_3_in_spec2_y[i];
-    const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*m->upu_h_3_in_spec2_x[i] -
-        m->upu_h_3_in_spec2_y[i]*(upu_f_3_o_t + upu_f_3_o_t_2) -
-        upu_B_2_o_in_axes2_zy*m->upu_h_3_in_spec2_z[i] +
-        upu_acc_3_o_in_axes2_z*m->upu_link3_mass[i];
-    /* (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real upu_mu_2_o_in_axes2_x = v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] +
-        v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_y[i] +
-        v.upu_B_2_o_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i] -
-        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] +
-        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_o_t_2 - v.upu_f_3_o_t_3) -
-        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_t +
-        upu_B_2_o_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] -
-        upu_B_2_o_in_axes2_zx*m->upu_J_group_2_in_axes2_xy[i] -
-        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_z[i];
-    const real upu_mu_2_o_in_axes2_y = v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i] -
-        v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i] +
-        v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_y[i] -
-        upu_B_2_o_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] -
-        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_o_t - v.upu_f_3_o_t_3) +
-        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_in_axes2_y +
-        upu_B_2_o_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] -
-        upu_B_2_o_in_axes2_zx*m->upu_Sigma_2_in_axes2_xx[i] -
-        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_x[i];
-    const real upu_mu_2_o_in_axes2_z = v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_z[i] -
-        v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_z[i] -
-        v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i] +
-        v.upu_B_2_o_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
-        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_x[i] +
-        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_o_t - upu_f_3_o_t_2) -
-        upu_B_2_o_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] +
-        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_o_in_axes2_y -
-        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_o_t;
-    /* (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-       connection point left out */
-    const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*v.upu_q_3;
-    const real upu_N_2_o_t = upu_N_2_o_in_axes2_y*v.upu_c_2 -
-        v.upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x;
-    /* (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y +
-        v.inv_upu_q_3*upu_mu_2_o_in_axes2_z;
-    /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real upu_dalpha_G_m1_y = v.axis_x_upu_axes2_y*v.upu_dalpha_G_m1_in_axes2_x +
-        v.axis_y_upu_axes2_y*v.upu_dalpha_G_m1_in_axes2_y;
-    const real upu_dalpha_G_m1_z = v.axis_x_upu_axes2_z*v.upu_dalpha_G_m1_in_axes2_x +
-        v.axis_y_upu_axes2_z*v.upu_dalpha_G_m1_in_axes2_y;
-    /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real upu_d_G_m1_x = v.axis_x_upu_axes2_x*v.upu_d_G_m1_in_axes2_x -
-        v.axis_y_upu_axes2_x*v.upu_d_G_m1_t - v.axis_z_upu_axes2_x*v.upu_d_G_m1_t_2;
-    const real upu_d_G_m1_y = v.axis_x_upu_axes2_y*v.upu_d_G_m1_in_axes2_x -
-        v.axis_y_upu_axes2_y*v.upu_d_G_m1_t - v.axis_z_upu_axes2_y*v.upu_d_G_m1_t_2;
-    const real upu_d_G_m1_z = v.axis_x_upu_axes2_z*v.upu_d_G_m1_in_axes2_x -
-        v.axis_y_upu_axes2_z*v.upu_d_G_m1_t - v.axis_z_upu_axes2_z*v.upu_d_G_m1_t_2;
-    /* (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real upu_G_m1_o = upu_N_2_o_t*v.upu_n_c_in_axes2_z*v.upu_w_1_in_axes2_z;
-    /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x;
-    const real upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x;
-    const real upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x;
-    const real upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y;
-    /* (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real upu_G_m_o_in_axes2_y = upu_G_m1_o*v.upu_n_m1_in_axes2_y;
-    /* (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real upu_c_o_in_axes2_z = upu_N_2_o_t*v.upu_w_1_in_axes2_z;
-    /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real upu_Q_t_5 = v.axis_y_upu_axes2_x*v.upu_Q_t_2 +
-        v.axis_x_upu_axes2_x*v.upu_d_phi_3_in_axes2_xy +
-        v.axis_z_upu_axes2_x*v.upu_d_G_in_axes2_yz;
-    const real upu_Q_t_6 = v.axis_y_upu_axes2_y*v.upu_Q_t_2 +
-        v.axis_x_upu_axes2_y*v.upu_d_phi_3_in_axes2_xy +
-        v.axis_z_upu_axes2_y*v.upu_d_G_in_axes2_yz;
-    const real upu_Q_t_7 = v.axis_y_upu_axes2_z*v.upu_Q_t_2 +
-        v.axis_x_upu_axes2_z*v.upu_d_phi_3_in_axes2_xy +
-        v.axis_z_upu_axes2_z*v.upu_d_G_in_axes2_yz;
-    const real upu_Q_t_8 = v.axis_z_upu_axes2_x*v.upu_Q_t_4 -
-        v.axis_x_upu_axes2_x*v.upu_d_c_in_axes2_xz;
-    const real upu_Q_t_9 = v.axis_z_upu_axes2_y*v.upu_Q_t_4 -
-        v.axis_x_upu_axes2_y*v.upu_d_c_in_axes2_xz;
-    const real upu_Q_t_10 = v.axis_z_upu_axes2_z*v.upu_Q_t_4 -
-        v.axis_x_upu_axes2_z*v.upu_d_c_in_axes2_xz;
-    const real upu_Q_t_11 = v.axis_y_upu_axes2_x*upu_Q_t_5 + v.axis_z_upu_axes2_x*upu_Q_t_8;
-    const real upu_Q_xx = m->upu_link3_mass[i] + 2*upu_Q_t_11;
-    const real upu_Q_xy = v.axis_y_upu_axes2_x*upu_Q_t_6 + v.axis_y_upu_axes2_y*upu_Q_t_5 +
-        v.axis_z_upu_axes2_x*upu_Q_t_9 + v.axis_z_upu_axes2_y*upu_Q_t_8;
-    const real upu_Q_xz = v.axis_y_upu_axes2_x*upu_Q_t_7 + v.axis_y_upu_axes2_z*upu_Q_t_5 +
-        v.axis_z_upu_axes2_x*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_8;
-    const real upu_Q_t_12 = v.axis_y_upu_axes2_y*upu_Q_t_6 + v.axis_z_upu_axes2_y*upu_Q_t_9;
-    const real upu_Q_yy = m->upu_link3_mass[i] + 2*upu_Q_t_12;
-    const real upu_Q_yz = v.axis_y_upu_axes2_y*upu_Q_t_7 + v.axis_y_upu_axes2_z*upu_Q_t_6 +
-        v.axis_z_upu_axes2_y*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_9;
-    const real upu_Q_t_13 = v.axis_y_upu_axes2_z*upu_Q_t_7 + v.axis_z_upu_axes2_z*upu_Q_t_10;
-    const real upu_Q_zz = m->upu_link3_mass[i] + 2*upu_Q_t_13;
-    /* (upu-c_m_o) remainder of: moment of the leg on the platform without actuation */
-    const real upu_c_m_o_in_axes2_x = upu_G_m1_o*v.upu_end_p1_in_axes2_y;
-    /* (upu-U) velocity and gravity terms of the leg force */
-    const real upu_U_x = v.axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x +
-        v.axis_y_upu_axes2_x*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_x*upu_c_o_in_axes2_z;
-    const real upu_U_y = v.axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x +
-        v.axis_y_upu_axes2_y*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_y*upu_c_o_in_axes2_z;
-    const real upu_U_z = v.axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x +
-        v.axis_y_upu_axes2_z*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_z*upu_c_o_in_axes2_z;
-    /* (M_ta) coupling block of M */
-    const real upu_M_ta_t = v.axis_x_upu_axes2_x*v.upu_dalpha_c_in_axes2_xx -
-        v.axis_y_upu_axes2_x*v.upu_dalpha_G_in_axes2_yx -
-        v.axis_z_upu_axes2_x*v.upu_dalpha_G_in_axes2_zx;
-    const real upu_M_ta_t_2 = v.axis_x_upu_axes2_y*v.upu_dalpha_c_in_axes2_xx -
-        v.axis_y_upu_axes2_y*v.upu_dalpha_G_in_axes2_yx -
-        v.axis_z_upu_axes2_y*v.upu_dalpha_G_in_axes2_zx;
-    const real upu_M_ta_t_3 = v.axis_x_upu_axes2_z*v.upu_dalpha_c_in_axes2_xx -
-        v.axis_y_upu_axes2_z*v.upu_dalpha_G_in_axes2_yx -
-        v.axis_z_upu_axes2_z*v.upu_dalpha_G_in_axes2_zx;
-    const real upu_M_ta_t_4 = -v.axis_x_upu_axes2_x*v.upu_dalpha_phi_3_in_axes2_xy -
-        v.axis_y_upu_axes2_x*v.upu_dalpha_G_in_axes2_yy -
-        v.axis_z_upu_axes2_x*v.upu_dalpha_G_in_axes2_zy;
-    const real upu_M_ta_t_5 = -v.axis_x_upu_axes2_y*v.upu_dalpha_phi_3_in_axes2_xy -
-        v.axis_y_upu_axes2_y*v.upu_dalpha_G_in_axes2_yy -
-        v.axis_z_upu_axes2_y*v.upu_dalpha_G_in_axes2_zy;
-    const real upu_M_ta_t_6 = -v.axis_x_upu_axes2_z*v.upu_dalpha_phi_3_in_axes2_xy -
-        v.axis_y_upu_axes2_z*v.upu_dalpha_G_in_axes2_yy -
-        v.axis_z_upu_axes2_z*v.upu_dalpha_G_in_axes2_zy;
-    const real upu_M_ta_t_7 = upu_Q_xy*v.upu_q_z;
-    const real upu_M_ta_t_8 = upu_Q_xz*v.upu_q_y;
-    const real upu_M_ta_t_9 = upu_Q_yz*v.upu_q_x;
-    const real upu_M_ta_t_10 = upu_M_ta_t_8 - v.axis_x_upu_axes2_x*upu_M_ta_t -
-        v.axis_y_upu_axes2_x*upu_M_ta_t_4 - upu_M_ta_t_7;
-    const real upu_M_ta_t_11 = upu_Q_xx*v.upu_q_z - v.axis_x_upu_axes2_y*upu_M_ta_t -
-        v.axis_y_upu_axes2_y*upu_M_ta_t_4 - upu_Q_xz*v.upu_q_x;
-    const real upu_M_ta_t_12 = upu_Q_xy*v.upu_q_x - v.axis_x_upu_axes2_z*upu_M_ta_t -
-        v.axis_y_upu_axes2_z*upu_M_ta_t_4 - upu_Q_xx*v.upu_q_y;
-    const real upu_M_ta_t_13 = upu_Q_yz*v.upu_q_y - v.axis_x_upu_axes2_x*upu_M_ta_t_2 -
-        v.axis_y_upu_axes2_x*upu_M_ta_t_5 - upu_Q_yy*v.upu_q_z;
-    const real upu_M_ta_t_14 = upu_M_ta_t_7 - v.axis_x_upu_axes2_y*upu_M_ta_t_2 -
-        v.axis_y_upu_axes2_y*upu_M_ta_t_5 - upu_M_ta_t_9;
-    const real upu_M_ta_t_15 = upu_Q_yy*v.upu_q_x - v.axis_x_upu_axes2_z*upu_M_ta_t_2 -
-        v.axis_y_upu_axes2_z*upu_M_ta_t_5 - upu_Q_xy*v.upu_q_y;
-    const real upu_M_ta_t_16 = upu_Q_zz*v.upu_q_y - v.axis_x_upu_axes2_x*upu_M_ta_t_3 -
-        v.axis_y_upu_axes2_x*upu_M_ta_t_6 - upu_Q_yz*v.upu_q_z;
-    const real upu_M_ta_t_17 = upu_Q_xz*v.upu_q_z - v.axis_x_upu_axes2_y*upu_M_ta_t_3 -
-        v.axis_y_upu_axes2_y*upu_M_ta_t_6 - upu_Q_zz*v.upu_q_x;
-    const real upu_M_ta_t_18 = upu_M_ta_t_9 - v.axis_x_upu_axes2_z*upu_M_ta_t_3 -
-        v.axis_y_upu_axes2_z*upu_M_ta_t_6 - upu_M_ta_t_8;
-    /* (M_aa) rotational block of M */
-    const real upu_M_aa_t = upu_d_G_m_xz*v.upu_q_y - upu_d_G_m_xy*v.upu_q_z +
-        upu_n_m1_x*(v.axis_x_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_x +
-        v.axis_y_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_y) + upu_M_ta_t_16*v.upu_q_y -
-        upu_M_ta_t_13*v.upu_q_z;
-    const real upu_M_aa_t_2 = upu_d_G_m_xx*v.upu_q_z - upu_d_G_m_xz*v.upu_q_x +
-        upu_dalpha_G_m1_y*upu_n_m1_x + upu_M_ta_t_17*v.upu_q_y - upu_M_ta_t_14*v.upu_q_z;
-    const real upu_M_aa_t_3 = upu_d_G_m_xy*v.upu_q_x - upu_d_G_m_xx*v.upu_q_y +
-        upu_dalpha_G_m1_z*upu_n_m1_x + upu_M_ta_t_18*v.upu_q_y - upu_M_ta_t_15*v.upu_q_z;
-    const real upu_M_aa_t_4 = upu_d_G_m_yx*v.upu_q_z - upu_d_G_m1_z*upu_n_m1_y*v.upu_q_x +
-        upu_dalpha_G_m1_y*upu_n_m1_y + upu_M_ta_t_11*v.upu_q_z - upu_M_ta_t_17*v.upu_q_x;
-    const real upu_M_aa_t_5 = upu_d_G_m1_y*upu_n_m1_y*v.upu_q_x - upu_d_G_m_yx*v.upu_q_y +
-        upu_dalpha_G_m1_z*upu_n_m1_y + upu_M_ta_t_12*v.upu_q_z - upu_M_ta_t_18*v.upu_q_x;
-    const real upu_M_aa_t_6 = upu_d_G_m1_y*upu_n_m1_z*v.upu_q_x -
-        upu_d_G_m1_x*upu_n_m1_z*v.upu_q_y + upu_dalpha_G_m1_z*upu_n_m1_z +
-        upu_M_ta_t_15*v.upu_q_x - upu_M_ta_t_12*v.upu_q_y;
-    /* (Z_a) rotational part of Z */
-    const real upu_Z_a_t = upu_U_z*v.upu_q_y - upu_U_y*v.upu_q_z +
-        v.axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y - v.axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x;
-    const real upu_Z_a_t_2 = upu_U_x*v.upu_q_z - upu_U_z*v.upu_q_x +
-        v.axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y - v.axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x;
-    const real upu_Z_a_t_3 = upu_U_y*v.upu_q_x - upu_U_x*v.upu_q_y +
-        v.axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y - v.axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x;
-    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-    const real upu_H_a_3_x = v.axis_x_upu_axes2_z*v.upu_q_y - v.axis_x_upu_axes2_y*v.upu_q_z;
-    const real upu_H_a_3_y = v.axis_x_upu_axes2_x*v.upu_q_z - v.axis_x_upu_axes2_z*v.upu_q_x;
-    const real upu_H_a_3_z = v.axis_x_upu_axes2_y*v.upu_q_x - v.axis_x_upu_axes2_x*v.upu_q_y;
-    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real upu_Hk_a_1_x = upu_n_m1_x + v.upu_n_c_z*v.upu_q_y - v.upu_n_c_y*v.upu_q_z;
-    const real upu_Hk_a_1_y = upu_n_m1_y + v.upu_n_c_x*v.upu_q_z - v.upu_n_c_z*v.upu_q_x;
-    const real upu_Hk_a_1_z = upu_n_m1_z + v.upu_n_c_y*v.upu_q_x - v.upu_n_c_x*v.upu_q_y;
+    stage_upu_Z_dynamics(m, i, &v);
     /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real upu_gamma_c1 = v.upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z + upu_nu_1;
+    const real upu_gamma_c1 = v.upu_n_c_in_axes2_z*v.upu_rel_o_in_axes2_z + v.upu_nu_1;
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, upu_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, upu_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, upu_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, upu_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, upu_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, upu_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, upu_M_ta_t_10);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, upu_M_ta_t_11);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, upu_M_ta_t_12);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, upu_M_ta_t_13);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, upu_M_ta_t_14);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, upu_M_ta_t_15);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, upu_M_ta_t_16);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, upu_M_ta_t_17);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, upu_M_ta_t_18);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, upu_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, upu_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, upu_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, upu_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, upu_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, upu_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.upu_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.upu_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.upu_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.upu_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.upu_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.upu_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.upu_M_ta_t_10);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.upu_M_ta_t_11);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.upu_M_ta_t_12);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.upu_M_ta_t_13);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.upu_M_ta_t_14);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v.upu_M_ta_t_15);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.upu_M_ta_t_16);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.upu_M_ta_t_17);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.upu_M_ta_t_18);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.upu_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.upu_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.upu_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.upu_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.upu_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.upu_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, upu_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, upu_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, upu_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[24*count + k], add, upu_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, upu_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, upu_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[21*count + k], add, v.upu_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, v.upu_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, v.upu_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[24*count + k], add, v.upu_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, v.upu_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, v.upu_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (upu-w_3) force part of reciprocal wrench 3 */
     o[0*count + k] = v.axis_x_upu_axes2_x;
     o[1*count + k] = v.axis_x_upu_axes2_y;
     o[2*count + k] = v.axis_x_upu_axes2_z;
-    /* (upu-H_a_3) */
-    o[3*count + k] = upu_H_a_3_x;
-    o[4*count + k] = upu_H_a_3_y;
-    o[5*count + k] = upu_H_a_3_z;
+    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.upu_H_a_3_x;
+    o[4*count + k] = v.upu_H_a_3_y;
+    o[5*count + k] = v.upu_H_a_3_z;
     /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
     o[6*count + k] = v.upu_n_c_x;
     o[7*count + k] = v.upu_n_c_y;
     o[8*count + k] = v.upu_n_c_z;
-    /* (upu-Hk_a_1) */
-    o[9*count + k] = upu_Hk_a_1_x;
-    o[10*count + k] = upu_Hk_a_1_y;
-    o[11*count + k] = upu_Hk_a_1_z;
+    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.upu_Hk_a_1_x;
+    o[10*count + k] = v.upu_Hk_a_1_y;
+    o[11*count + k] = v.upu_Hk_a_1_z;
     /* (upu-gamma_c1) */
     o[12*count + k] = upu_gamma_c1;
     o[14*count + k] = ((v.axis_x_upu_axes2_x + (v.axis_x_upu_axes2_y + v.axis_x_upu_axes2_z))
-        + (upu_H_a_3_x + (upu_H_a_3_y + upu_H_a_3_z))) + ((v.upu_n_c_x + (v.upu_n_c_y +
-        v.upu_n_c_z)) + ((upu_Hk_a_1_x + upu_Hk_a_1_y) + (upu_Hk_a_1_z + upu_gamma_c1)));
+        + (v.upu_H_a_3_x + (v.upu_H_a_3_y + v.upu_H_a_3_z))) + ((v.upu_n_c_x + (v.upu_n_c_y +
+        v.upu_n_c_z)) + ((v.upu_Hk_a_1_x + v.upu_Hk_a_1_y) + (v.upu_Hk_a_1_z +
+        upu_gamma_c1)));
     o[13*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
@@ -2600,7 +2480,7 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void dynamics_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *Hk, real *constraint_bias, verdict *t)
+    *o, real *H, real *Hk, real *constraint_bias, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -2620,7 +2500,7 @@ INLINE void dynamics_place_upu(size_t w, size_t i, size_t k, size_t at, size_t c
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
-    real *M, real *Z, verdict *t)
+    real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2631,58 +2511,58 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_zz = m->platform_mass + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
-    const real Z_p_x = s[18*w + k];
+    const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[21*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[19*w + k];
+    const real Z_p_y = s[28*w + k];
     const real Z_t_y_of_legs = sums[22*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[20*w + k];
+    const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[23*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
-    const real Z_q_x = s[21*w + k];
+    const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
-    const real Z_q_y = s[22*w + k];
+    const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
-    const real Z_q_z = s[23*w + k];
+    const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2744,9 +2624,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 }
 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
-    *H, real *Hk, real *constraint_bias, verdict *t)
+    *H, real *Hk, real *constraint_bias, status_flags *t)
 {
-    real s[24] = {0}, sums[27] = {0};
+    real s[33] = {0}, sums[27] = {0};
     real terms_upu[27*LEGS(LEGS_OF_upu)] = {0}, o_upu[15*LEGS(LEGS_OF_upu)] = {0};
     values v;
     dynamics_before(m, 1, 0, X, &v, s, t);
@@ -2764,10 +2644,10 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 }
 
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
-    real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias, verdict
-    *restrict t)
+    real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
+    status_flags *restrict t)
 {
-    real s[24*LANES], sums[27*LANES];
+    real s[33*LANES], sums[27*LANES];
     real o_upu[15*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -2790,7 +2670,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 
 /* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2802,21 +2682,16 @@ INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, value
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->h_star_x;
-    s[10*w + k] = v->h_star_y;
-    s[11*w + k] = v->h_star_z;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_xy;
+    s[23*w + k] = v->J_star_xz;
+    s[24*w + k] = v->J_star_yy;
+    s[25*w + k] = v->J_star_yz;
+    s[26*w + k] = v->J_star_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
-{
-    stage_M_dynamics(m, v);
-    s[12*w + k] = v->J_star_xx;
-    s[13*w + k] = v->J_star_xy;
-    s[14*w + k] = v->J_star_xz;
-    s[15*w + k] = v->J_star_yy;
-    s[16*w + k] = v->J_star_yz;
-    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2825,168 +2700,43 @@ INLINE void M_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_M_dynamics(m, i, &v);
-    /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real upu_n_m1_t_6 = v.upu_c_1*v.upu_e_1_in_axes2_x;
-    const real upu_n_m1_t_7 = v.upu_e_1_in_axes2_x*v.upu_s_1;
-    const real axis_y_upu_axes2_x = m->upu_base_frame_xx[i]*upu_n_m1_t_6 -
-        m->upu_base_frame_xz[i]*v.upu_c_2 + m->upu_base_frame_xy[i]*upu_n_m1_t_7;
-    const real axis_y_upu_axes2_y = m->upu_base_frame_yx[i]*upu_n_m1_t_6 -
-        m->upu_base_frame_yz[i]*v.upu_c_2 + m->upu_base_frame_yy[i]*upu_n_m1_t_7;
-    const real axis_y_upu_axes2_z = m->upu_base_frame_zx[i]*upu_n_m1_t_6 -
-        m->upu_base_frame_zz[i]*v.upu_c_2 + m->upu_base_frame_zy[i]*upu_n_m1_t_7;
-    const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*v.axis_z_upu_axes2_z -
-        axis_y_upu_axes2_z*v.axis_z_upu_axes2_y;
-    const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*v.axis_z_upu_axes2_x -
-        axis_y_upu_axes2_x*v.axis_z_upu_axes2_z;
-    const real axis_x_upu_axes2_z = axis_y_upu_axes2_x*v.axis_z_upu_axes2_y -
-        axis_y_upu_axes2_y*v.axis_z_upu_axes2_x;
-    const real upu_n_m1_x = axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
-        axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y;
-    const real upu_n_m1_y = axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
-        axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y;
-    const real upu_n_m1_z = axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
-        axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y;
-    /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real upu_dalpha_G_m1_y = axis_x_upu_axes2_y*v.upu_dalpha_G_m1_in_axes2_x +
-        axis_y_upu_axes2_y*v.upu_dalpha_G_m1_in_axes2_y;
-    const real upu_dalpha_G_m1_z = axis_x_upu_axes2_z*v.upu_dalpha_G_m1_in_axes2_x +
-        axis_y_upu_axes2_z*v.upu_dalpha_G_m1_in_axes2_y;
-    /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real upu_d_G_m1_x = axis_x_upu_axes2_x*v.upu_d_G_m1_in_axes2_x -
-        axis_y_upu_axes2_x*v.upu_d_G_m1_t - v.axis_z_upu_axes2_x*v.upu_d_G_m1_t_2;
-    const real upu_d_G_m1_y = axis_x_upu_axes2_y*v.upu_d_G_m1_in_axes2_x -
-        axis_y_upu_axes2_y*v.upu_d_G_m1_t - v.axis_z_upu_axes2_y*v.upu_d_G_m1_t_2;
-    const real upu_d_G_m1_z = axis_x_upu_axes2_z*v.upu_d_G_m1_in_axes2_x -
-        axis_y_upu_axes2_z*v.upu_d_G_m1_t - v.axis_z_upu_axes2_z*v.upu_d_G_m1_t_2;
-    /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x;
-    const real upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x;
-    const real upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x;
-    const real upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y;
-    /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real upu_Q_t_5 = axis_y_upu_axes2_x*v.upu_Q_t_2 +
-        axis_x_upu_axes2_x*v.upu_d_phi_3_in_axes2_xy +
-        v.axis_z_upu_axes2_x*v.upu_d_G_in_axes2_yz;
-    const real upu_Q_t_6 = axis_y_upu_axes2_y*v.upu_Q_t_2 +
-        axis_x_upu_axes2_y*v.upu_d_phi_3_in_axes2_xy +
-        v.axis_z_upu_axes2_y*v.upu_d_G_in_axes2_yz;
-    const real upu_Q_t_7 = axis_y_upu_axes2_z*v.upu_Q_t_2 +
-        axis_x_upu_axes2_z*v.upu_d_phi_3_in_axes2_xy +
-        v.axis_z_upu_axes2_z*v.upu_d_G_in_axes2_yz;
-    const real upu_Q_t_8 = v.axis_z_upu_axes2_x*v.upu_Q_t_4 -
-        axis_x_upu_axes2_x*v.upu_d_c_in_axes2_xz;
-    const real upu_Q_t_9 = v.axis_z_upu_axes2_y*v.upu_Q_t_4 -
-        axis_x_upu_axes2_y*v.upu_d_c_in_axes2_xz;
-    const real upu_Q_t_10 = v.axis_z_upu_axes2_z*v.upu_Q_t_4 -
-        axis_x_upu_axes2_z*v.upu_d_c_in_axes2_xz;
-    const real upu_Q_t_11 = axis_y_upu_axes2_x*upu_Q_t_5 + v.axis_z_upu_axes2_x*upu_Q_t_8;
-    const real upu_Q_xx = m->upu_link3_mass[i] + 2*upu_Q_t_11;
-    const real upu_Q_xy = axis_y_upu_axes2_x*upu_Q_t_6 + axis_y_upu_axes2_y*upu_Q_t_5 +
-        v.axis_z_upu_axes2_x*upu_Q_t_9 + v.axis_z_upu_axes2_y*upu_Q_t_8;
-    const real upu_Q_xz = axis_y_upu_axes2_x*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_5 +
-        v.axis_z_upu_axes2_x*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_8;
-    const real upu_Q_t_12 = axis_y_upu_axes2_y*upu_Q_t_6 + v.axis_z_upu_axes2_y*upu_Q_t_9;
-    const real upu_Q_yy = m->upu_link3_mass[i] + 2*upu_Q_t_12;
-    const real upu_Q_yz = axis_y_upu_axes2_y*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_6 +
-        v.axis_z_upu_axes2_y*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_9;
-    const real upu_Q_t_13 = axis_y_upu_axes2_z*upu_Q_t_7 + v.axis_z_upu_axes2_z*upu_Q_t_10;
-    const real upu_Q_zz = m->upu_link3_mass[i] + 2*upu_Q_t_13;
-    /* (M_ta) coupling block of M */
-    const real upu_M_ta_t = axis_x_upu_axes2_x*v.upu_dalpha_c_in_axes2_xx -
-        axis_y_upu_axes2_x*v.upu_dalpha_G_in_axes2_yx -
-        v.axis_z_upu_axes2_x*v.upu_dalpha_G_in_axes2_zx;
-    const real upu_M_ta_t_2 = axis_x_upu_axes2_y*v.upu_dalpha_c_in_axes2_xx -
-        axis_y_upu_axes2_y*v.upu_dalpha_G_in_axes2_yx -
-        v.axis_z_upu_axes2_y*v.upu_dalpha_G_in_axes2_zx;
-    const real upu_M_ta_t_3 = axis_x_upu_axes2_z*v.upu_dalpha_c_in_axes2_xx -
-        axis_y_upu_axes2_z*v.upu_dalpha_G_in_axes2_yx -
-        v.axis_z_upu_axes2_z*v.upu_dalpha_G_in_axes2_zx;
-    const real upu_M_ta_t_4 = -axis_x_upu_axes2_x*v.upu_dalpha_phi_3_in_axes2_xy -
-        axis_y_upu_axes2_x*v.upu_dalpha_G_in_axes2_yy -
-        v.axis_z_upu_axes2_x*v.upu_dalpha_G_in_axes2_zy;
-    const real upu_M_ta_t_5 = -axis_x_upu_axes2_y*v.upu_dalpha_phi_3_in_axes2_xy -
-        axis_y_upu_axes2_y*v.upu_dalpha_G_in_axes2_yy -
-        v.axis_z_upu_axes2_y*v.upu_dalpha_G_in_axes2_zy;
-    const real upu_M_ta_t_6 = -axis_x_upu_axes2_z*v.upu_dalpha_phi_3_in_axes2_xy -
-        axis_y_upu_axes2_z*v.upu_dalpha_G_in_axes2_yy -
-        v.axis_z_upu_axes2_z*v.upu_dalpha_G_in_axes2_zy;
-    const real upu_M_ta_t_7 = upu_Q_xy*v.upu_q_z;
-    const real upu_M_ta_t_8 = upu_Q_xz*v.upu_q_y;
-    const real upu_M_ta_t_9 = upu_Q_yz*v.upu_q_x;
-    const real upu_M_ta_t_10 = upu_M_ta_t_8 - axis_x_upu_axes2_x*upu_M_ta_t -
-        axis_y_upu_axes2_x*upu_M_ta_t_4 - upu_M_ta_t_7;
-    const real upu_M_ta_t_11 = upu_Q_xx*v.upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t -
-        axis_y_upu_axes2_y*upu_M_ta_t_4 - upu_Q_xz*v.upu_q_x;
-    const real upu_M_ta_t_12 = upu_Q_xy*v.upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t -
-        axis_y_upu_axes2_z*upu_M_ta_t_4 - upu_Q_xx*v.upu_q_y;
-    const real upu_M_ta_t_13 = upu_Q_yz*v.upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_2 -
-        axis_y_upu_axes2_x*upu_M_ta_t_5 - upu_Q_yy*v.upu_q_z;
-    const real upu_M_ta_t_14 = upu_M_ta_t_7 - axis_x_upu_axes2_y*upu_M_ta_t_2 -
-        axis_y_upu_axes2_y*upu_M_ta_t_5 - upu_M_ta_t_9;
-    const real upu_M_ta_t_15 = upu_Q_yy*v.upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t_2 -
-        axis_y_upu_axes2_z*upu_M_ta_t_5 - upu_Q_xy*v.upu_q_y;
-    const real upu_M_ta_t_16 = upu_Q_zz*v.upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_3 -
-        axis_y_upu_axes2_x*upu_M_ta_t_6 - upu_Q_yz*v.upu_q_z;
-    const real upu_M_ta_t_17 = upu_Q_xz*v.upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t_3 -
-        axis_y_upu_axes2_y*upu_M_ta_t_6 - upu_Q_zz*v.upu_q_x;
-    const real upu_M_ta_t_18 = upu_M_ta_t_9 - axis_x_upu_axes2_z*upu_M_ta_t_3 -
-        axis_y_upu_axes2_z*upu_M_ta_t_6 - upu_M_ta_t_8;
-    /* (M_aa) rotational block of M */
-    const real upu_M_aa_t = upu_d_G_m_xz*v.upu_q_y - upu_d_G_m_xy*v.upu_q_z +
-        upu_n_m1_x*(axis_x_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_x +
-        axis_y_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_y) + upu_M_ta_t_16*v.upu_q_y -
-        upu_M_ta_t_13*v.upu_q_z;
-    const real upu_M_aa_t_2 = upu_d_G_m_xx*v.upu_q_z - upu_d_G_m_xz*v.upu_q_x +
-        upu_dalpha_G_m1_y*upu_n_m1_x + upu_M_ta_t_17*v.upu_q_y - upu_M_ta_t_14*v.upu_q_z;
-    const real upu_M_aa_t_3 = upu_d_G_m_xy*v.upu_q_x - upu_d_G_m_xx*v.upu_q_y +
-        upu_dalpha_G_m1_z*upu_n_m1_x + upu_M_ta_t_18*v.upu_q_y - upu_M_ta_t_15*v.upu_q_z;
-    const real upu_M_aa_t_4 = upu_d_G_m_yx*v.upu_q_z - upu_d_G_m1_z*upu_n_m1_y*v.upu_q_x +
-        upu_dalpha_G_m1_y*upu_n_m1_y + upu_M_ta_t_11*v.upu_q_z - upu_M_ta_t_17*v.upu_q_x;
-    const real upu_M_aa_t_5 = upu_d_G_m1_y*upu_n_m1_y*v.upu_q_x - upu_d_G_m_yx*v.upu_q_y +
-        upu_dalpha_G_m1_z*upu_n_m1_y + upu_M_ta_t_12*v.upu_q_z - upu_M_ta_t_18*v.upu_q_x;
-    const real upu_M_aa_t_6 = upu_d_G_m1_y*upu_n_m1_z*v.upu_q_x -
-        upu_d_G_m1_x*upu_n_m1_z*v.upu_q_y + upu_dalpha_G_m1_z*upu_n_m1_z +
-        upu_M_ta_t_15*v.upu_q_x - upu_M_ta_t_12*v.upu_q_y;
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, upu_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, upu_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, upu_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, upu_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, upu_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, upu_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) */
-    gather(&terms[6*count + k], add, upu_M_ta_t_10);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, upu_M_ta_t_11);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, upu_M_ta_t_12);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, upu_M_ta_t_13);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, upu_M_ta_t_14);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, upu_M_ta_t_15);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, upu_M_ta_t_16);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, upu_M_ta_t_17);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, upu_M_ta_t_18);  /* M_ta_zz */
-    /* (M_aa) */
-    gather(&terms[15*count + k], add, upu_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, upu_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, upu_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, upu_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, upu_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, upu_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[0*count + k], add, v.upu_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.upu_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.upu_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v.upu_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.upu_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v.upu_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.upu_M_ta_t_10);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.upu_M_ta_t_11);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.upu_M_ta_t_12);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.upu_M_ta_t_13);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.upu_M_ta_t_14);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v.upu_M_ta_t_15);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.upu_M_ta_t_16);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.upu_M_ta_t_17);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.upu_M_ta_t_18);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.upu_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.upu_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.upu_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.upu_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.upu_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.upu_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
         LEAST_3);
 }
 
-INLINE void M_place_upu(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void M_place_upu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
-    *M, verdict *t)
+    *M, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
@@ -2997,37 +2747,37 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_zz = m->platform_mass + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
-    const real h_star_z = s[11*w + k];
+    const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
-    const real h_star_y = s[10*w + k];
+    const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[9*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
-    const real h_star_x = s[9*w + k];
+    const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
-    const real J_star_xx = s[12*w + k];
+    const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[13*w + k];
+    const real J_star_xy = s[22*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[14*w + k];
+    const real J_star_xz = s[23*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[15*w + k];
+    const real J_star_yy = s[24*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[16*w + k];
+    const real J_star_yz = s[25*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[17*w + k];
+    const real J_star_zz = s[26*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -3081,9 +2831,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
-APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[18] = {0}, sums[21] = {0};
+    real s[27] = {0}, sums[21] = {0};
     real terms_upu[21*LEGS(LEGS_OF_upu)] = {0}, o_upu[LEGS(LEGS_OF_upu)] = {0};
     values v;
     M_before(m, 1, 0, X, &v, s, t);
@@ -3096,18 +2846,17 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
-    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
+    t)
 {
-    real s[18*LANES], sums[21*LANES];
+    real s[27*LANES], sums[21*LANES];
     real o_upu[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         M_before(m, LANES, k, X, &v, s, t);
-        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
@@ -3125,7 +2874,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 
 /* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3142,14 +2891,13 @@ INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, value
 
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
     stage_Z_dynamics(m, w, k, V, v);
-    s[9*w + k] = v->Z_p_x;
-    s[10*w + k] = v->Z_p_y;
-    s[11*w + k] = v->Z_p_z;
-    s[12*w + k] = v->Z_q_x;
-    s[13*w + k] = v->Z_q_y;
-    s[14*w + k] = v->Z_q_z;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3158,186 +2906,47 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_V_X(w, j, V, &v);
-    stage_upu_Z_dynamics(m, w, i, j, V, &v);
-    /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
-    const real omega_x = V[3*w + j];
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real upu_eta_1 = omega_x*(v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y) +
-        omega_y*(v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y) +
-        omega_z*(v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y);
-    /* (upu-qd_1) rate of joint 1 */
-    const real upu_qd_1 = v.upu_w_1_in_axes2_z*(v.axis_z_upu_axes2_x*v.upu_S_dot_x +
-        v.axis_z_upu_axes2_y*v.upu_S_dot_y + v.axis_z_upu_axes2_z*v.upu_S_dot_z -
-        upu_eta_1*v.upu_n_c_in_axes2_z);
-    /* (upu-omega_1) angular velocity of link 1 */
-    const real upu_omega_1_in_axes2_x = v.upu_e_1_in_axes2_x*upu_qd_1;
-    const real upu_omega_1_in_axes2_y = -v.upu_c_2*upu_qd_1;
-    /* (upu-W_2) centripetal tensor of link 2 */
-    const real upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*v.upu_qd_2;
-    const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*v.upu_qd_2;
-    const real upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y;
-    /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-    const real upu_bias_t_2 = v.upu_bias_t*upu_omega_1_in_axes2_y;
-    const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*v.upu_q_3 - upu_bias_t_2;
-    /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real upu_rel_o_in_axes2_z = v.axis_z_upu_axes2_x*v.upu_u_1_x +
-        v.axis_z_upu_axes2_y*v.upu_u_1_y + v.axis_z_upu_axes2_z*v.upu_u_1_z -
-        upu_bias_in_axes2_z;
-    /* (upu-nd_m1) rate of moment direction 1 */
-    const real upu_nd_m1_in_axes2_x = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_x -
-        v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z -
-        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x;
-    const real upu_nd_m1_in_axes2_y = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_y -
-        v.upu_end_p1_in_axes2_y*v.upu_omega_in_axes2_z -
-        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
-    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real upu_nu_1_t = upu_W_2_in_axes2_xz*v.upu_n_m1_in_axes2_y +
-        upu_W_2_in_axes2_yz*v.upu_end_p1_in_axes2_y;
-    const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(v.upu_omega_in_axes2_y -
-        upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
-        v.upu_omega_in_axes2_x) - (v.upu_omega_in_axes2_z -
-        v.upu_qd_2)*(-v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-        v.upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
-    const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
-    /* (upu-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real upu_qdd_1_o_t = v.upu_w_1_in_axes2_z*(v.upu_n_c_in_axes2_z*upu_nu_1 -
-        upu_rel_o_in_axes2_z);
-    /* (upu-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real upu_alpha_1_o_t = v.upu_e_1_in_axes2_x*upu_qdd_1_o_t;
-    const real upu_alpha_1_o_in_axes2_y = v.upu_c_2*upu_qdd_1_o_t;
-    /* (upu-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t;
-    const real upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz;
-    /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real upu_B_2_o_in_axes2_xy = 2*upu_W_2_in_axes2_xy - v.upu_B_2_o_in_axes2_yx;
-    const real upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
-    const real upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
-    /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v.upu_q_3 - v.upu_g_in_axes2_z -
-        upu_bias_t_2;
-    /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
-    const real upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
-    const real upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
-    const real upu_f_3_o_in_axes2_x = v.upu_acc_3_o_in_axes2_x*m->upu_link3_mass[i] -
-        upu_B_2_o_in_axes2_xy*m->upu_h_3_in_spec2_z[i] -
-        m->upu_h_3_in_spec2_x[i]*(v.upu_f_3_o_t_3 + upu_f_3_o_t_2) +
-        upu_alpha_1_o_in_axes2_y*m->upu_h_3_in_spec2_y[i];
-    const real upu_f_3_o_in_axes2_y = v.upu_B_2_o_in_axes2_yx*m->upu_h_3_in_spec2_x[i] +
-        v.upu_acc_3_o_in_axes2_y*m->upu_link3_mass[i] +
-        m->upu_h_3_in_spec2_z[i]*(v.upu_f_3_o_t_3 + upu_f_3_o_t) +
-        upu_alpha_1_o_t*m->upu_h_3_in_spec2_y[i];
-    const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*m->upu_h_3_in_spec2_x[i] -
-        m->upu_h_3_in_spec2_y[i]*(upu_f_3_o_t + upu_f_3_o_t_2) -
-        upu_B_2_o_in_axes2_zy*m->upu_h_3_in_spec2_z[i] +
-        upu_acc_3_o_in_axes2_z*m->upu_link3_mass[i];
-    /* (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real upu_mu_2_o_in_axes2_x = v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] +
-        v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_y[i] +
-        v.upu_B_2_o_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i] -
-        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] +
-        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_o_t_2 - v.upu_f_3_o_t_3) -
-        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_t +
-        upu_B_2_o_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] -
-        upu_B_2_o_in_axes2_zx*m->upu_J_group_2_in_axes2_xy[i] -
-        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_z[i];
-    const real upu_mu_2_o_in_axes2_y = v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i] -
-        v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i] +
-        v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_y[i] -
-        upu_B_2_o_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] -
-        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_o_t - v.upu_f_3_o_t_3) +
-        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_in_axes2_y +
-        upu_B_2_o_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] -
-        upu_B_2_o_in_axes2_zx*m->upu_Sigma_2_in_axes2_xx[i] -
-        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_x[i];
-    const real upu_mu_2_o_in_axes2_z = v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_z[i] -
-        v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_z[i] -
-        v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i] +
-        v.upu_B_2_o_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
-        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_x[i] +
-        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_o_t - upu_f_3_o_t_2) -
-        upu_B_2_o_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] +
-        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_o_in_axes2_y -
-        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_o_t;
-    /* (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-       connection point left out */
-    const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*v.upu_q_3;
-    const real upu_N_2_o_t = upu_N_2_o_in_axes2_y*v.upu_c_2 -
-        v.upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x;
-    /* (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y +
-        v.inv_upu_q_3*upu_mu_2_o_in_axes2_z;
-    /* (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real upu_G_m1_o = upu_N_2_o_t*v.upu_n_c_in_axes2_z*v.upu_w_1_in_axes2_z;
-    /* (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real upu_G_m_o_in_axes2_y = upu_G_m1_o*v.upu_n_m1_in_axes2_y;
-    /* (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real upu_c_o_in_axes2_z = upu_N_2_o_t*v.upu_w_1_in_axes2_z;
-    /* (upu-c_m_o) remainder of: moment of the leg on the platform without actuation */
-    const real upu_c_m_o_in_axes2_x = upu_G_m1_o*v.upu_end_p1_in_axes2_y;
-    /* (upu-U) velocity and gravity terms of the leg force */
-    const real upu_U_x = v.axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x +
-        v.axis_y_upu_axes2_x*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_x*upu_c_o_in_axes2_z;
-    const real upu_U_y = v.axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x +
-        v.axis_y_upu_axes2_y*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_y*upu_c_o_in_axes2_z;
-    const real upu_U_z = v.axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x +
-        v.axis_y_upu_axes2_z*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_z*upu_c_o_in_axes2_z;
-    /* (Z_a) rotational part of Z */
-    const real upu_Z_a_t = upu_U_z*v.upu_q_y - upu_U_y*v.upu_q_z +
-        v.axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y - v.axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x;
-    const real upu_Z_a_t_2 = upu_U_x*v.upu_q_z - upu_U_z*v.upu_q_x +
-        v.axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y - v.axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x;
-    const real upu_Z_a_t_3 = upu_U_y*v.upu_q_x - upu_U_x*v.upu_q_y +
-        v.axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y - v.axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x;
+    stage_upu_Z_dynamics(m, i, &v);
     /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, upu_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, upu_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, upu_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[3*count + k], add, upu_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, upu_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, upu_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[0*count + k], add, v.upu_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.upu_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.upu_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v.upu_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v.upu_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v.upu_Z_a_t_3);  /* Z_a_z_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
         LEAST_3);
 }
 
-INLINE void Z_place_upu(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void Z_place_upu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
-    const real Z_p_x = s[9*w + k];
+    const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-    const real Z_p_y = s[10*w + k];
+    const real Z_p_y = s[19*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    const real Z_p_z = s[11*w + k];
+    const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
-    const real Z_q_x = s[12*w + k];
+    const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
-    const real Z_q_y = s[13*w + k];
+    const real Z_q_y = s[22*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
-    const real Z_q_z = s[14*w + k];
+    const real Z_q_z = s[23*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
@@ -3350,9 +2959,9 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
-INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_upu[6*LEGS(LEGS_OF_upu)] = {0}, o_upu[LEGS(LEGS_OF_upu)] = {0};
     values v;
     Z_before(m, 1, 0, X, &v, s, t);
@@ -3369,10 +2978,10 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
-    *restrict t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
+    status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_upu[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3395,7 +3004,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 
 /* ---- H ---- */
 INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3415,23 +3024,22 @@ INLINE void H_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
-    stage_upu_H_condition(m, i, &v);
     /* (upu-w_3) force part of reciprocal wrench 3 */
-    o[0*count + k] = v.upu_w_3_x;
-    o[1*count + k] = v.upu_w_3_y;
-    o[2*count + k] = v.upu_w_3_z;
+    o[0*count + k] = v.axis_x_upu_axes2_x;
+    o[1*count + k] = v.axis_x_upu_axes2_y;
+    o[2*count + k] = v.axis_x_upu_axes2_z;
     /* (upu-H_a_3) moment of the column's unit force about the platform origin */
     o[3*count + k] = v.upu_H_a_3_x;
     o[4*count + k] = v.upu_H_a_3_y;
     o[5*count + k] = v.upu_H_a_3_z;
-    o[7*count + k] = (v.upu_w_3_x + (v.upu_w_3_y + v.upu_w_3_z)) + (v.upu_H_a_3_x +
-        (v.upu_H_a_3_y + v.upu_H_a_3_z));
+    o[7*count + k] = (v.axis_x_upu_axes2_x + (v.axis_x_upu_axes2_y + v.axis_x_upu_axes2_z)) +
+        (v.upu_H_a_3_x + (v.upu_H_a_3_y + v.upu_H_a_3_z));
     o[6*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_3);
 }
 
 INLINE void H_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, verdict *t)
+    *H, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -3443,9 +3051,9 @@ INLINE void H_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[7*count + at];
 }
 
-APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_upu[8*LEGS(LEGS_OF_upu)] = {0};
     values v;
     H_before(m, 1, 0, X, &v, s, t);
@@ -3457,9 +3065,10 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
+    t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_upu[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3477,7 +3086,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 
 /* ---- Hk ---- */
 INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3498,46 +3107,22 @@ INLINE void Hk_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t 
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
     /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-    const real upu_n_c_in_axes2_z = v.upu_q_3*(v.upu_c_2*v.upu_n_m1_in_axes2_y +
-        v.upu_e_1_in_axes2_x*v.upu_end_p1_in_axes2_y)/v.upu_volume_c_t;
-    const real upu_n_c_x = v.axis_z_upu_axes2_x*upu_n_c_in_axes2_z;
-    const real upu_n_c_y = v.axis_z_upu_axes2_y*upu_n_c_in_axes2_z;
-    const real upu_n_c_z = v.axis_z_upu_axes2_z*upu_n_c_in_axes2_z;
+    o[0*count + k] = v.upu_n_c_x;
+    o[1*count + k] = v.upu_n_c_y;
+    o[2*count + k] = v.upu_n_c_z;
     /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real upu_Hk_a_1_t = v.upu_c_1*v.upu_e_1_in_axes2_x;
-    const real upu_Hk_a_1_t_2 = v.upu_e_1_in_axes2_x*v.upu_s_1;
-    const real axis_y_upu_axes2_x = upu_Hk_a_1_t*m->upu_base_frame_xx[i] -
-        m->upu_base_frame_xz[i]*v.upu_c_2 + upu_Hk_a_1_t_2*m->upu_base_frame_xy[i];
-    const real axis_y_upu_axes2_y = upu_Hk_a_1_t*m->upu_base_frame_yx[i] -
-        m->upu_base_frame_yz[i]*v.upu_c_2 + upu_Hk_a_1_t_2*m->upu_base_frame_yy[i];
-    const real axis_y_upu_axes2_z = upu_Hk_a_1_t*m->upu_base_frame_zx[i] -
-        m->upu_base_frame_zz[i]*v.upu_c_2 + upu_Hk_a_1_t_2*m->upu_base_frame_zy[i];
-    const real upu_Hk_a_1_x = axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
-        v.upu_end_p1_in_axes2_y*(axis_y_upu_axes2_y*v.axis_z_upu_axes2_z -
-        axis_y_upu_axes2_z*v.axis_z_upu_axes2_y) + upu_n_c_z*v.upu_q_y - upu_n_c_y*v.upu_q_z;
-    const real upu_Hk_a_1_y = axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
-        v.upu_end_p1_in_axes2_y*(axis_y_upu_axes2_z*v.axis_z_upu_axes2_x -
-        axis_y_upu_axes2_x*v.axis_z_upu_axes2_z) + upu_n_c_x*v.upu_q_z - upu_n_c_z*v.upu_q_x;
-    const real upu_Hk_a_1_z = axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
-        v.upu_end_p1_in_axes2_y*(axis_y_upu_axes2_x*v.axis_z_upu_axes2_y -
-        axis_y_upu_axes2_y*v.axis_z_upu_axes2_x) + upu_n_c_y*v.upu_q_x - upu_n_c_x*v.upu_q_y;
-    /* (upu-n_c) */
-    o[0*count + k] = upu_n_c_x;
-    o[1*count + k] = upu_n_c_y;
-    o[2*count + k] = upu_n_c_z;
-    /* (upu-Hk_a_1) */
-    o[3*count + k] = upu_Hk_a_1_x;
-    o[4*count + k] = upu_Hk_a_1_y;
-    o[5*count + k] = upu_Hk_a_1_z;
-    o[7*count + k] = (upu_n_c_x + (upu_n_c_y + upu_n_c_z)) + (upu_Hk_a_1_x + (upu_Hk_a_1_y +
-        upu_Hk_a_1_z));
+    o[3*count + k] = v.upu_Hk_a_1_x;
+    o[4*count + k] = v.upu_Hk_a_1_y;
+    o[5*count + k] = v.upu_Hk_a_1_z;
+    o[7*count + k] = (v.upu_n_c_x + (v.upu_n_c_y + v.upu_n_c_z)) + (v.upu_Hk_a_1_x +
+        (v.upu_Hk_a_1_y + v.upu_Hk_a_1_z));
     o[6*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3);
 }
 
 INLINE void Hk_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *Hk, verdict *t)
+    real *Hk, status_flags *t)
 {
     Hk[i*w + k] = o[0*count + at];
     Hk[(NC + i)*w + k] = o[1*count + at];
@@ -3549,9 +3134,9 @@ INLINE void Hk_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, 
     t->total[k] += o[7*count + at];
 }
 
-APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
+APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_upu[8*LEGS(LEGS_OF_upu)] = {0};
     values v;
     Hk_before(m, 1, 0, X, &v, s, t);
@@ -3563,9 +3148,10 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
     }
 }
 
-INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, verdict *restrict t)
+INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, status_flags
+    *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_upu[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3583,7 +3169,7 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, ve
 
 /* ---- constraint_bias ---- */
 INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, verdict *t)
+    *v, real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3604,53 +3190,9 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t i, size
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_V_X(w, j, V, &v);
-    /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
-    const real omega_x = V[3*w + j];
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real upu_eta_1 = omega_x*(v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y) +
-        omega_y*(v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y) +
-        omega_z*(v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y);
-    /* (upu-qd_1) rate of joint 1 */
-    const real upu_qd_1 = (v.axis_z_upu_axes2_x*v.upu_S_dot_x +
-        v.axis_z_upu_axes2_y*v.upu_S_dot_y + v.axis_z_upu_axes2_z*v.upu_S_dot_z -
-        upu_eta_1*v.upu_n_c_in_axes2_z)/v.upu_w_1_t;
-    /* (upu-omega_1) angular velocity of link 1 */
-    const real upu_omega_1_in_axes2_x = v.upu_e_1_in_axes2_x*upu_qd_1;
-    const real upu_omega_1_in_axes2_y = -v.upu_c_2*upu_qd_1;
-    /* (upu-W_2) centripetal tensor of link 2 */
-    const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*v.upu_qd_2;
-    /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-    const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*v.upu_q_3 -
-        2*v.upu_S_dot_in_axes2_x*upu_omega_1_in_axes2_y;
-    /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real upu_rel_o_in_axes2_z = v.axis_z_upu_axes2_x*(omega_y*v.upu_S_dot_t_5 -
-        omega_z*v.upu_S_dot_t_4) + v.axis_z_upu_axes2_y*(omega_z*v.upu_S_dot_t_3 -
-        omega_x*v.upu_S_dot_t_5) + v.axis_z_upu_axes2_z*(omega_x*v.upu_S_dot_t_4 -
-        omega_y*v.upu_S_dot_t_3) - upu_bias_in_axes2_z;
-    /* (upu-nd_m1) rate of moment direction 1 */
-    const real upu_nd_m1_in_axes2_x = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_x -
-        v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z -
-        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x;
-    const real upu_nd_m1_in_axes2_y = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_y -
-        v.upu_end_p1_in_axes2_y*v.upu_omega_in_axes2_z -
-        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
-    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real upu_nu_1_t = upu_W_2_in_axes2_xz*v.upu_n_m1_in_axes2_y +
-        v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y*v.upu_qd_2;
-    const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(v.upu_omega_in_axes2_y -
-        upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
-        v.upu_omega_in_axes2_x) - (v.upu_omega_in_axes2_z -
-        v.upu_qd_2)*(-v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-        v.upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
-    const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
     /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real upu_gamma_c1 = v.upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z + upu_nu_1;
+    const real upu_gamma_c1 = v.upu_n_c_in_axes2_z*v.upu_rel_o_in_axes2_z + v.upu_nu_1;
     /* (upu-gamma_c1) */
     o[0*count + k] = upu_gamma_c1;
     o[2*count + k] = upu_gamma_c1;
@@ -3661,7 +3203,7 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t i, size
 }
 
 INLINE void constraint_bias_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *constraint_bias, verdict *t)
+    real *o, real *constraint_bias, status_flags *t)
 {
     constraint_bias[i*w + k] = o[0*count + at];
     t->singular[k] += o[1*count + at];
@@ -3669,9 +3211,9 @@ INLINE void constraint_bias_place_upu(size_t w, size_t i, size_t k, size_t at, s
 }
 
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
-    *constraint_bias, verdict *t)
+    *constraint_bias, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_upu[3*LEGS(LEGS_OF_upu)] = {0};
     values v;
     constraint_bias_before(m, 1, 0, X, &v, s, t);
@@ -3684,9 +3226,9 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 }
 
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
-    *restrict constraint_bias, verdict *restrict t)
+    *restrict constraint_bias, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_upu[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -3703,10 +3245,12 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -3716,20 +3260,21 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
-    stage_V_X(w, k, V, v);
-    /* (W_p) centripetal tensor of the platform */
-    const real omega_x = V[3*w + k];
-    const real omega_y = V[4*w + k];
-    const real W_p_xy = omega_x*omega_y;
-    const real omega_z = V[5*w + k];
-    const real W_p_xz = omega_x*omega_z;
-    const real W_p_yz = omega_y*omega_z;
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -3741,28 +3286,31 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
     const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
-    const real f_p_t = omega_x*omega_x;
-    const real f_p_t_2 = omega_y*omega_y;
-    const real f_p_t_3 = omega_z*omega_z;
+    const real f_p_x = a_t_x*m->platform_mass + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z
+        - v->W_p_t_4*v->h_star_x;
+    const real f_p_y = a_t_y*m->platform_mass + v->B_p_yx*v->h_star_x + v->B_p_yz*v->h_star_z
+        - v->W_p_t_5*v->h_star_y;
+    const real f_p_z = a_t_z*m->platform_mass + v->B_p_zx*v->h_star_x + v->B_p_zy*v->h_star_y
+        - v->W_p_t_6*v->h_star_z;
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    const real mu_p_t = m->J_star_in_platform_xx*omega_in_platform_x +
+        m->J_star_in_platform_xy*omega_in_platform_y +
+        m->J_star_in_platform_xz*omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*omega_in_platform_x +
+        m->J_star_in_platform_yy*omega_in_platform_y +
+        m->J_star_in_platform_yz*omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*omega_in_platform_x +
+        m->J_star_in_platform_yz*omega_in_platform_y +
+        m->J_star_in_platform_zz*omega_in_platform_z;
+    const real alpha_x = A[3*w + k];
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->platform_mass + v->h_star_y*(W_p_xy - alpha_z) +
-        v->h_star_z*(alpha_y + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
-    const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->platform_mass + v->h_star_x*(alpha_z + W_p_xy) +
-        v->h_star_z*(W_p_yz - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->platform_mass + v->h_star_x*(W_p_xz - alpha_y) +
-        v->h_star_y*(alpha_x + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
-    /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
-        m->J_star_in_platform_xy*v->omega_in_platform_y +
-        m->J_star_in_platform_xz*v->omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
-        m->J_star_in_platform_yy*v->omega_in_platform_y +
-        m->J_star_in_platform_yz*v->omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
-        m->J_star_in_platform_yz*v->omega_in_platform_y +
-        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
@@ -3770,29 +3318,29 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
         a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
+        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
         a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
+        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
         a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
     const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
         v->R_xz*mu_p_in_platform_z;
     const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
         v->R_yz*mu_p_in_platform_z;
     const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
         v->R_zz*mu_p_in_platform_z;
-    s[9*w + k] = f_p_x;
-    s[10*w + k] = f_p_y;
-    s[11*w + k] = f_p_z;
-    s[12*w + k] = mu_p_x;
-    s[13*w + k] = mu_p_y;
-    s[14*w + k] = mu_p_z;
+    s[18*w + k] = f_p_x;
+    s[19*w + k] = f_p_y;
+    s[20*w + k] = f_p_z;
+    s[21*w + k] = mu_p_x;
+    s[22*w + k] = mu_p_y;
+    s[23*w + k] = mu_p_z;
 }
 
 INLINE void required_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3803,29 +3351,12 @@ INLINE void required_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_A_X(w, j, A, &v);
     stage_upu_V_X(w, j, V, &v);
-    stage_upu_A_V_X(w, j, V, &v);
+    stage_upu_A_V_X(w, j, s, A, &v);
     stage_upu_legs_required(m, i, &v);
     /* (R_a) moment that actuators and external wrench must give */
-    const real upu_R_a_t = v.upu_c_y*v.upu_q_z - v.upu_c_z*v.upu_q_y +
-        v.axis_y_upu_axes2_x*v.upu_G_m_in_axes2_y - v.axis_x_upu_axes2_x*v.upu_c_m_in_axes2_x;
-    const real upu_R_a_t_2 = v.upu_c_z*v.upu_q_x - v.upu_c_x*v.upu_q_z +
-        v.axis_y_upu_axes2_y*v.upu_G_m_in_axes2_y - v.axis_x_upu_axes2_y*v.upu_c_m_in_axes2_x;
-    const real upu_R_a_t_3 = v.upu_c_x*v.upu_q_y - v.upu_c_y*v.upu_q_x +
-        v.axis_y_upu_axes2_z*v.upu_G_m_in_axes2_y - v.axis_x_upu_axes2_z*v.upu_c_m_in_axes2_x;
-    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-    const real upu_H_a_3_x = v.axis_x_upu_axes2_z*v.upu_q_y - v.axis_x_upu_axes2_y*v.upu_q_z;
-    const real upu_H_a_3_y = v.axis_x_upu_axes2_x*v.upu_q_z - v.axis_x_upu_axes2_z*v.upu_q_x;
-    const real upu_H_a_3_z = v.axis_x_upu_axes2_y*v.upu_q_x - v.axis_x_upu_axes2_x*v.upu_q_y;
-    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real upu_Hk_a_1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y + v.upu_n_c_z*v.upu_q_y -
-        v.upu_n_c_y*v.upu_q_z;
-    const real upu_Hk_a_1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y + v.upu_n_c_x*v.upu_q_z -
-        v.upu_n_c_z*v.upu_q_x;
-    const real upu_Hk_a_1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y + v.upu_n_c_y*v.upu_q_x -
-        v.upu_n_c_x*v.upu_q_y;
+    const real upu_R_a_t = v.upu_c_y*v.upu_q_z - v.upu_c_z*v.upu_q_y - v.upu_c_m_x;
+    const real upu_R_a_t_2 = v.upu_c_z*v.upu_q_x - v.upu_c_x*v.upu_q_z - v.upu_c_m_y;
+    const real upu_R_a_t_3 = v.upu_c_x*v.upu_q_y - v.upu_c_y*v.upu_q_x - v.upu_c_m_z;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, v.upu_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, v.upu_c_y);  /* R_t_y_of_legs */
@@ -3838,18 +3369,18 @@ INLINE void required_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     o[0*count + k] = v.axis_x_upu_axes2_x;
     o[1*count + k] = v.axis_x_upu_axes2_y;
     o[2*count + k] = v.axis_x_upu_axes2_z;
-    /* (upu-H_a_3) */
-    o[3*count + k] = upu_H_a_3_x;
-    o[4*count + k] = upu_H_a_3_y;
-    o[5*count + k] = upu_H_a_3_z;
+    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.upu_H_a_3_x;
+    o[4*count + k] = v.upu_H_a_3_y;
+    o[5*count + k] = v.upu_H_a_3_z;
     /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
     o[6*count + k] = v.upu_n_c_x;
     o[7*count + k] = v.upu_n_c_y;
     o[8*count + k] = v.upu_n_c_z;
-    /* (upu-Hk_a_1) */
-    o[9*count + k] = upu_Hk_a_1_x;
-    o[10*count + k] = upu_Hk_a_1_y;
-    o[11*count + k] = upu_Hk_a_1_z;
+    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.upu_Hk_a_1_x;
+    o[10*count + k] = v.upu_Hk_a_1_y;
+    o[11*count + k] = v.upu_Hk_a_1_z;
     o[12*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
@@ -3857,7 +3388,7 @@ INLINE void required_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
 }
 
 INLINE void required_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *Hk, verdict *t)
+    *o, real *H, real *Hk, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -3878,23 +3409,23 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 {
     /* (R_t) */
     const real R_t_x_of_legs = sums[0*w + k];
-    const real f_p_x = s[9*w + k];
+    const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
-    const real f_p_y = s[10*w + k];
+    const real f_p_y = s[19*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
     const real R_t_z_of_legs = sums[2*w + k];
-    const real f_p_z = s[11*w + k];
+    const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
-    const real mu_p_x = s[12*w + k];
+    const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
-    const real mu_p_y = s[13*w + k];
+    const real mu_p_y = s[22*w + k];
     const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
-    const real mu_p_z = s[14*w + k];
+    const real mu_p_z = s[23*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
@@ -3907,12 +3438,12 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 }
 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *required, real *H, real *Hk, verdict *t)
+    *required, real *H, real *Hk, status_flags *t)
 {
-    real s[15] = {0}, sums[6] = {0};
+    real s[24] = {0}, sums[6] = {0};
     real terms_upu[6*LEGS(LEGS_OF_upu)] = {0}, o_upu[13*LEGS(LEGS_OF_upu)] = {0};
     values v;
-    required_before(m, 1, 0, X, &v, s, t);
+    required_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         required_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, V, A, terms_upu, o_upu);
     }
@@ -3927,13 +3458,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *restrict required, real *restrict H, real *restrict Hk, verdict *restrict t)
+    real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
-    real s[15*LANES], sums[6*LANES];
+    real s[24*LANES], sums[6*LANES];
     real o_upu[13*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s, t);
+        required_before(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3952,7 +3483,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 
 /* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, verdict *t)
+    *v, real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3970,58 +3501,25 @@ INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, con
 INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
-    /* (upu-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real upu_S_x = t_x - m->upu_base_point_x[i] + R_xy*m->upu_platform_point_y[i] +
-        R_xz*m->upu_platform_point_z[i] + R_xx*m->upu_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real upu_S_y = t_y - m->upu_base_point_y[i] + R_yx*m->upu_platform_point_x[i] +
-        R_yz*m->upu_platform_point_z[i] + R_yy*m->upu_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real upu_S_z = t_z - m->upu_base_point_z[i] + R_zx*m->upu_platform_point_x[i] +
-        R_zy*m->upu_platform_point_y[i] + R_zz*m->upu_platform_point_z[i];
-    const real upu_S_in_turn1_x = upu_S_x*m->upu_base_frame_xx[i] +
-        upu_S_y*m->upu_base_frame_yx[i] + upu_S_z*m->upu_base_frame_zx[i];
-    const real upu_S_in_turn1_y = upu_S_x*m->upu_base_frame_xy[i] +
-        upu_S_y*m->upu_base_frame_yy[i] + upu_S_z*m->upu_base_frame_zy[i];
-    const real upu_S_in_turn1_z = upu_S_x*m->upu_base_frame_xz[i] +
-        upu_S_y*m->upu_base_frame_yz[i] + upu_S_z*m->upu_base_frame_zz[i];
-    /* (upu-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x +
-        upu_S_in_turn1_y*upu_S_in_turn1_y;
-    const real upu_root_1 = m->upu_branch_1[i]*root(upu_root_1_t);
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
     /* (upu-q_1) displacement of joint 1 */
-    const real inv_upu_root_1 = 1/upu_root_1;
-    const real upu_q_1 = angle(inv_upu_root_1*upu_S_in_turn1_y,
-        inv_upu_root_1*upu_S_in_turn1_x);
-    /* (upu-q_3) displacement of joint 3 */
-    const real upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t;
-    const real upu_q_3 = m->upu_branch_2[i]*root(upu_q_3_t);
+    const real upu_q_1 = angle(v.upu_s_1, v.upu_c_1);
     /* (upu-q_2) displacement of joint 2 */
-    const real inv_upu_q_3 = 1/upu_q_3;
-    const real upu_q_2 = angle(-inv_upu_q_3*upu_S_in_turn1_z, inv_upu_q_3*upu_root_1);
+    const real upu_q_2 = angle(-v.upu_e_1_in_axes2_x, v.upu_c_2);
     /* (upu-q_1) */
     o[0*count + k] = upu_q_1;
     /* (upu-q_2) */
     o[1*count + k] = upu_q_2;
-    /* (upu-q_3) */
-    o[2*count + k] = upu_q_3;
-    o[4*count + k] = upu_q_1 + (upu_q_2 + upu_q_3);
-    o[3*count + k] = UNLESS(magnitude(upu_root_1_t) > LEAST_1) + UNLESS(magnitude(upu_q_3_t) >
-        LEAST_1);
+    /* (upu-q_3) displacement of joint 3 */
+    o[2*count + k] = v.upu_q_3;
+    o[4*count + k] = upu_q_1 + (upu_q_2 + v.upu_q_3);
+    o[3*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1);
 }
 
 INLINE void inverse_kinematics_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *q, verdict *t)
+    const real *o, real *q, status_flags *t)
 {
     q[3*i*w + k] = o[0*count + at];
     q[(1 + 3*i)*w + k] = o[1*count + at];
@@ -4030,9 +3528,9 @@ INLINE void inverse_kinematics_place_upu(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
-APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_upu[5*LEGS(LEGS_OF_upu)] = {0};
     values v;
     inverse_kinematics_before(m, 1, 0, X, &v, s, t);
@@ -4045,9 +3543,9 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_upu[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -4065,7 +3563,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 
 /* ---- joint_rates ---- */
 INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, verdict *t)
+    real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4085,36 +3583,14 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t w, size_t i, size_t j
 {
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
-    /* (upu-S_dot) velocity of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real t_dot_x = V[0*w + j];
-    const real upu_S_dot_x = t_dot_x + omega_y*v.upu_q_z - omega_z*v.upu_q_y;
-    const real omega_x = V[3*w + j];
-    const real t_dot_y = V[1*w + j];
-    const real upu_S_dot_y = t_dot_y + omega_z*v.upu_q_x - omega_x*v.upu_q_z;
-    const real t_dot_z = V[2*w + j];
-    const real upu_S_dot_z = t_dot_z + omega_x*v.upu_q_y - omega_y*v.upu_q_x;
-    const real upu_S_dot_in_axes2_x = v.axis_x_upu_axes2_x*upu_S_dot_x +
-        v.axis_x_upu_axes2_y*upu_S_dot_y + v.axis_x_upu_axes2_z*upu_S_dot_z;
+    stage_upu_V_X(w, j, V, &v);
     /* (upu-qd_1) rate of joint 1 */
-    const real upu_qd_1_t = v.axis_z_upu_axes2_x*upu_S_dot_x +
-        v.axis_z_upu_axes2_y*upu_S_dot_y + v.axis_z_upu_axes2_z*upu_S_dot_z +
-        v.upu_n_c_in_axes2_z*(v.upu_end_p1_in_axes2_y*(v.axis_x_upu_axes2_x*omega_x +
-        v.axis_x_upu_axes2_y*omega_y + v.axis_x_upu_axes2_z*omega_z) -
-        v.upu_n_m1_in_axes2_y*(v.axis_y_upu_axes2_x*omega_x + v.axis_y_upu_axes2_y*omega_y +
-        v.axis_y_upu_axes2_z*omega_z));
-    const real upu_qd_1 = upu_qd_1_t/v.upu_w_1_t;
+    o[0*count + k] = v.upu_qd_1_2;
     /* (upu-qd_2) rate of joint 2 */
-    const real upu_qd_2 = v.inv_upu_q_3*(v.axis_y_upu_axes2_x*upu_S_dot_x +
-        v.axis_y_upu_axes2_y*upu_S_dot_y + v.axis_y_upu_axes2_z*upu_S_dot_z);
-    /* (upu-qd_1) */
-    o[0*count + k] = upu_qd_1;
-    /* (upu-qd_2) */
-    o[1*count + k] = upu_qd_2;
+    o[1*count + k] = v.upu_qd_2;
     /* (upu-qd_3) rate of joint 3 */
-    o[2*count + k] = upu_S_dot_in_axes2_x;
-    o[4*count + k] = upu_qd_1 + (upu_qd_2 + upu_S_dot_in_axes2_x);
+    o[2*count + k] = v.upu_S_dot_in_axes2_x;
+    o[4*count + k] = v.upu_qd_1_2 + (v.upu_qd_2 + v.upu_S_dot_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
@@ -4122,7 +3598,7 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t w, size_t i, size_t j
 }
 
 INLINE void joint_rates_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *qd, verdict *t)
+    real *o, real *qd, status_flags *t)
 {
     qd[3*i*w + k] = o[0*count + at];
     qd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -4131,9 +3607,10 @@ INLINE void joint_rates_place_upu(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
-APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
+    *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_upu[5*LEGS(LEGS_OF_upu)] = {0};
     values v;
     joint_rates_before(m, 1, 0, X, &v, s, t);
@@ -4146,9 +3623,9 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
-    qd, verdict *restrict t)
+    qd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_upu[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -4165,10 +3642,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
+    real *V, const real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -4178,6 +3657,15 @@ INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, co
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -4188,37 +3676,16 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t w, size_t i, 
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_A_X(w, j, A, &v);
     stage_upu_V_X(w, j, V, &v);
-    stage_upu_A_V_X(w, j, V, &v);
-    /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-    const real upu_bias_in_axes2_z = 2*v.upu_W_2_in_axes2_xz*v.upu_q_3 -
-        v.upu_bias_t*v.upu_omega_1_in_axes2_y;
+    stage_upu_A_V_X(w, j, s, A, &v);
     /* (upu-rel) acceleration of the connection point left to the joint accelerations */
-    const real upu_rel_in_axes2_x = v.axis_x_upu_axes2_x*v.upu_S_ddot_x +
-        v.axis_x_upu_axes2_y*v.upu_S_ddot_y + v.axis_x_upu_axes2_z*v.upu_S_ddot_z +
-        v.upu_q_3*(v.upu_qd_2*v.upu_qd_2 + v.upu_omega_1_in_axes2_y*v.upu_omega_1_in_axes2_y);
-    const real upu_rel_in_axes2_z = v.axis_z_upu_axes2_x*v.upu_S_ddot_x +
-        v.axis_z_upu_axes2_y*v.upu_S_ddot_y + v.axis_z_upu_axes2_z*v.upu_S_ddot_z -
-        upu_bias_in_axes2_z;
-    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real upu_nu_1_t = -v.upu_W_2_in_axes2_xz*v.upu_n_m1_in_axes2_y -
-        v.upu_end_p1_in_axes2_y*v.upu_omega_1_in_axes2_y*v.upu_qd_2;
-    const real upu_nu_1 = v.upu_nu_1_t_2 - upu_nu_1_t;
-    /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real upu_etad_1 = upu_nu_1 - v.upu_etad_1_t;
+    const real upu_rel_in_axes2_x = v.upu_S_ddot_in_axes2_x + v.upu_W_2_t_3*v.upu_q_3;
     /* (upu-qdd_1) acceleration of joint 1 */
-    const real upu_qdd_1_t = v.upu_w_1_in_axes2_z*(upu_etad_1*v.upu_n_c_in_axes2_z -
-        upu_rel_in_axes2_z);
+    o[0*count + k] = -v.upu_qdd_1_t;
     /* (upu-qdd_2) acceleration of joint 2 */
-    const real upu_qdd_2 = v.inv_upu_q_3*(v.axis_y_upu_axes2_x*v.upu_S_ddot_x +
-        v.axis_y_upu_axes2_y*v.upu_S_ddot_y + v.axis_y_upu_axes2_z*v.upu_S_ddot_z -
-        v.upu_bias_t*v.upu_qd_2) - v.upu_omega_1_in_axes2_x*v.upu_omega_1_in_axes2_y;
-    /* (upu-qdd_1) */
-    o[0*count + k] = -upu_qdd_1_t;
-    /* (upu-qdd_2) */
-    o[1*count + k] = upu_qdd_2;
+    o[1*count + k] = v.upu_qdd_2;
     /* (upu-qdd_3) acceleration of joint 3 */
     o[2*count + k] = upu_rel_in_axes2_x;
-    o[4*count + k] = upu_qdd_1_t + (upu_qdd_2 + upu_rel_in_axes2_x);
+    o[4*count + k] = v.upu_qdd_1_t + (v.upu_qdd_2 + upu_rel_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
@@ -4226,7 +3693,7 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t w, size_t i, 
 }
 
 INLINE void joint_accelerations_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count,
-    const real *o, real *qdd, verdict *t)
+    const real *o, real *qdd, status_flags *t)
 {
     qdd[3*i*w + k] = o[0*count + at];
     qdd[(1 + 3*i)*w + k] = o[1*count + at];
@@ -4236,12 +3703,12 @@ INLINE void joint_accelerations_place_upu(size_t w, size_t i, size_t k, size_t a
 }
 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
-    real *qdd, verdict *t)
+    real *qdd, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_upu[5*LEGS(LEGS_OF_upu)] = {0};
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s, t);
+    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         joint_accelerations_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, A, o_upu);
     }
@@ -4251,13 +3718,13 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *restrict qdd, verdict *restrict t)
+    real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_upu[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s, t);
+        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4271,7 +3738,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 
 /* ---- constraints ---- */
 INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, verdict *t)
+    real *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4289,68 +3756,25 @@ INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real
 INLINE void constraints_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, real *o)
 {
-    /* (upu-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real upu_S_x = t_x - m->upu_base_point_x[i] + R_xy*m->upu_platform_point_y[i] +
-        R_xz*m->upu_platform_point_z[i] + R_xx*m->upu_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real upu_S_y = t_y - m->upu_base_point_y[i] + R_yx*m->upu_platform_point_x[i] +
-        R_yz*m->upu_platform_point_z[i] + R_yy*m->upu_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real upu_S_z = t_z - m->upu_base_point_z[i] + R_zx*m->upu_platform_point_x[i] +
-        R_zy*m->upu_platform_point_y[i] + R_zz*m->upu_platform_point_z[i];
-    const real upu_S_in_turn1_x = upu_S_x*m->upu_base_frame_xx[i] +
-        upu_S_y*m->upu_base_frame_yx[i] + upu_S_z*m->upu_base_frame_zx[i];
-    const real upu_S_in_turn1_y = upu_S_x*m->upu_base_frame_xy[i] +
-        upu_S_y*m->upu_base_frame_yy[i] + upu_S_z*m->upu_base_frame_zy[i];
-    /* (upu-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x +
-        upu_S_in_turn1_y*upu_S_in_turn1_y;
-    const real upu_root_1 = m->upu_branch_1[i]*root(upu_root_1_t);
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
     /* (upu-phi_c1) loop-closure residual about the constraint moment */
-    const real inv_upu_root_1 = 1/upu_root_1;
-    const real upu_phi_c1_t =
-        m->upu_platform_joint_axis_platform_x[i]*(R_yx*m->upu_base_frame_yx[i] +
-        R_zx*m->upu_base_frame_zx[i] + R_xx*m->upu_base_frame_xx[i]) +
-        m->upu_platform_joint_axis_platform_y[i]*(R_xy*m->upu_base_frame_xx[i] +
-        R_zy*m->upu_base_frame_zx[i] + R_yy*m->upu_base_frame_yx[i]) +
-        m->upu_platform_joint_axis_platform_z[i]*(R_xz*m->upu_base_frame_xx[i] +
-        R_yz*m->upu_base_frame_yx[i] + R_zz*m->upu_base_frame_zx[i]);
-    const real upu_phi_c1_t_2 =
-        m->upu_platform_joint_axis_platform_x[i]*(R_yx*m->upu_base_frame_yy[i] +
-        R_zx*m->upu_base_frame_zy[i] + R_xx*m->upu_base_frame_xy[i]) +
-        m->upu_platform_joint_axis_platform_y[i]*(R_xy*m->upu_base_frame_xy[i] +
-        R_zy*m->upu_base_frame_zy[i] + R_yy*m->upu_base_frame_yy[i]) +
-        m->upu_platform_joint_axis_platform_z[i]*(R_xz*m->upu_base_frame_xy[i] +
-        R_yz*m->upu_base_frame_yy[i] + R_zz*m->upu_base_frame_zy[i]);
-    const real upu_end_p1_in_axes2_z = inv_upu_root_1*upu_S_in_turn1_x*upu_phi_c1_t_2 -
-        inv_upu_root_1*upu_S_in_turn1_y*upu_phi_c1_t;
-    /* (upu-phi_c1) */
-    o[0*count + k] = -upu_end_p1_in_axes2_z;
-    o[2*count + k] = upu_end_p1_in_axes2_z;
-    o[1*count + k] = UNLESS(magnitude(upu_root_1_t) > LEAST_1);
+    o[0*count + k] = -v.upu_end_p1_in_axes2_z;
+    o[2*count + k] = v.upu_end_p1_in_axes2_z;
+    o[1*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1);
 }
 
 INLINE void constraints_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const
-    real *o, real *constraints, verdict *t)
+    real *o, real *constraints, status_flags *t)
 {
     constraints[i*w + k] = o[0*count + at];
     t->singular[k] += o[1*count + at];
     t->total[k] += o[2*count + at];
 }
 
-APART void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
+APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_upu[3*LEGS(LEGS_OF_upu)] = {0};
     values v;
     constraints_before(m, 1, 0, X, &v, s, t);
@@ -4363,9 +3787,9 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 }
 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
-    verdict *restrict t)
+    status_flags *restrict t)
 {
-    real s[9*LANES];
+    real s[18*LANES];
     real o_upu[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
@@ -4382,10 +3806,12 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
+    real *A, values *v, real *s, status_flags *t)
 {
+    stage_V(w, k, V, v);
     stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
     s[0*w + k] = v->R_xx;
     s[1*w + k] = v->R_xy;
     s[2*w + k] = v->R_xz;
@@ -4395,6 +3821,15 @@ INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, va
     s[6*w + k] = v->R_zx;
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
@@ -4405,31 +3840,17 @@ INLINE void legs_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_A_X(w, j, A, &v);
     stage_upu_V_X(w, j, V, &v);
-    stage_upu_A_V_X(w, j, V, &v);
+    stage_upu_A_V_X(w, j, s, A, &v);
     stage_upu_legs_required(m, i, &v);
-    /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real upu_n_m1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y;
-    const real upu_n_m1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y;
-    const real upu_n_m1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
-        v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y;
-    /* (upu-c_m) moment of the leg on the platform without actuation */
-    const real upu_c_m_x = v.axis_x_upu_axes2_x*v.upu_c_m_in_axes2_x -
-        v.axis_y_upu_axes2_x*v.upu_G_m_in_axes2_y;
-    const real upu_c_m_y = v.axis_x_upu_axes2_y*v.upu_c_m_in_axes2_x -
-        v.axis_y_upu_axes2_y*v.upu_G_m_in_axes2_y;
-    const real upu_c_m_z = v.axis_x_upu_axes2_z*v.upu_c_m_in_axes2_x -
-        v.axis_y_upu_axes2_z*v.upu_G_m_in_axes2_y;
     /* (upu-c) leg force on the platform without actuation and without the mass at the connection
        point */
     o[0*count + k] = v.upu_c_x;
     o[1*count + k] = v.upu_c_y;
     o[2*count + k] = v.upu_c_z;
-    /* (upu-c_m) */
-    o[3*count + k] = upu_c_m_x;
-    o[4*count + k] = upu_c_m_y;
-    o[5*count + k] = upu_c_m_z;
+    /* (upu-c_m) moment of the leg on the platform without actuation */
+    o[3*count + k] = v.upu_c_m_x;
+    o[4*count + k] = v.upu_c_m_y;
+    o[5*count + k] = v.upu_c_m_z;
     /* (upu-w_3) force part of reciprocal wrench 3 */
     o[6*count + k] = v.axis_x_upu_axes2_x;
     o[7*count + k] = v.axis_x_upu_axes2_y;
@@ -4439,9 +3860,9 @@ INLINE void legs_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_
     o[10*count + k] = v.upu_n_c_y;
     o[11*count + k] = v.upu_n_c_z;
     /* (upu-mu_c) moment that goes with it */
-    o[12*count + k] = upu_n_m1_x;
-    o[13*count + k] = upu_n_m1_y;
-    o[14*count + k] = upu_n_m1_z;
+    o[12*count + k] = v.upu_n_m1_x;
+    o[13*count + k] = v.upu_n_m1_y;
+    o[14*count + k] = v.upu_n_m1_z;
     o[15*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
@@ -4449,7 +3870,7 @@ INLINE void legs_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_
 }
 
 INLINE void legs_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *leg_force, real *actuator, real *constraint_direction, verdict *t)
+    real *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
     leg_force[6*i*w + k] = o[0*count + at];
     leg_force[(6*i + 1)*w + k] = o[1*count + at];
@@ -4470,13 +3891,13 @@ INLINE void legs_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *actuator, real *constraint_direction, verdict *t)
+    *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
-    real s[9] = {0};
+    real s[18] = {0};
     real o_upu[16*LEGS(LEGS_OF_upu)] = {0};
     clear(actuator, 18);
     values v;
-    legs_before(m, 1, 0, X, &v, s, t);
+    legs_before(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         legs_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, A, o_upu);
     }
@@ -4487,7 +3908,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 
 /* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, verdict *t)
+    *s, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4509,86 +3930,40 @@ INLINE void potential_between(const prepared *m, size_t w, size_t k, const real 
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(m->platform_mass*t_x +
-        v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
-        v->R_xx*m->h_star_in_platform_x) + m->gravity_y*(m->platform_mass*t_y +
-        v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
-        v->R_yy*m->h_star_in_platform_y) + m->gravity_z*(m->platform_mass*t_z +
-        v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
-        v->R_zz*m->h_star_in_platform_z);
-    s[9*w + k] = potential_t;
+    const real potential_t = m->gravity_x*(m->platform_mass*t_x + v->h_star_x) +
+        m->gravity_y*(m->platform_mass*t_y + v->h_star_y) + m->gravity_z*(m->platform_mass*t_z
+        + v->h_star_z);
+    s[18*w + k] = potential_t;
 }
 
 INLINE void potential_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    /* (upu-S) from the base point to the connection point */
-    const real R_xx = s[0*w + j];
-    const real R_xy = s[1*w + j];
-    const real R_xz = s[2*w + j];
-    const real t_x = X[0*w + j];
-    const real upu_S_x = t_x - m->upu_base_point_x[i] + R_xy*m->upu_platform_point_y[i] +
-        R_xz*m->upu_platform_point_z[i] + R_xx*m->upu_platform_point_x[i];
-    const real R_yx = s[3*w + j];
-    const real R_yy = s[4*w + j];
-    const real R_yz = s[5*w + j];
-    const real t_y = X[1*w + j];
-    const real upu_S_y = t_y - m->upu_base_point_y[i] + R_yx*m->upu_platform_point_x[i] +
-        R_yz*m->upu_platform_point_z[i] + R_yy*m->upu_platform_point_y[i];
-    const real R_zx = s[6*w + j];
-    const real R_zy = s[7*w + j];
-    const real R_zz = s[8*w + j];
-    const real t_z = X[2*w + j];
-    const real upu_S_z = t_z - m->upu_base_point_z[i] + R_zx*m->upu_platform_point_x[i] +
-        R_zy*m->upu_platform_point_y[i] + R_zz*m->upu_platform_point_z[i];
-    const real upu_S_in_turn1_x = upu_S_x*m->upu_base_frame_xx[i] +
-        upu_S_y*m->upu_base_frame_yx[i] + upu_S_z*m->upu_base_frame_zx[i];
-    const real upu_S_in_turn1_y = upu_S_x*m->upu_base_frame_xy[i] +
-        upu_S_y*m->upu_base_frame_yy[i] + upu_S_z*m->upu_base_frame_zy[i];
-    const real upu_S_in_turn1_z = upu_S_x*m->upu_base_frame_xz[i] +
-        upu_S_y*m->upu_base_frame_yz[i] + upu_S_z*m->upu_base_frame_zz[i];
-    /* (upu-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    const real upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x +
-        upu_S_in_turn1_y*upu_S_in_turn1_y;
-    const real upu_root_1 = m->upu_branch_1[i]*root(upu_root_1_t);
-    /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_upu_root_1 = 1/upu_root_1;
-    const real upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x;
-    /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-    const real upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y;
-    /* (upu-q_3) displacement of joint 3 */
-    const real upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t;
-    const real upu_q_3 = m->upu_branch_2[i]*root(upu_q_3_t);
-    /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_upu_q_3 = 1/upu_q_3;
-    const real upu_c_2 = inv_upu_q_3*upu_root_1;
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
     /* (potential) */
-    const real upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z;
-    const real upu_potential_t_4 = m->upu_acc_3_t[i]*upu_c_1 + m->upu_acc_3_t_2[i]*upu_s_1;
-    const real upu_potential_t_5 = upu_c_1*m->upu_potential_t[i] +
-        m->upu_potential_t_2[i]*upu_s_1;
-    const real upu_b_in_spec2_y = upu_c_1*m->upu_potential_t_2[i] -
-        m->upu_potential_t[i]*upu_s_1;
-    const real upu_b_in_spec2_x = upu_c_2*upu_potential_t_5 +
-        upu_e_1_in_axes2_x*m->upu_potential_t_3[i];
-    const real upu_b_in_spec2_z = upu_c_2*m->upu_potential_t_3[i] -
-        upu_e_1_in_axes2_x*upu_potential_t_5;
-    const real upu_potential_t_6 = (upu_e_1_in_axes2_x*upu_potential_t_4 -
-        m->upu_acc_3_t_3[i]*upu_c_2)*(m->upu_h_2_in_spec2_z[i] + m->upu_h_3_in_spec2_z[i] +
-        upu_b_in_spec2_z*m->upu_link2_mass[i] + upu_b_in_spec2_z*m->upu_link3_mass[i]) -
-        (m->upu_acc_3_t_2[i]*upu_c_1 - m->upu_acc_3_t[i]*upu_s_1)*(m->upu_h_2_in_spec2_y[i] +
-        m->upu_h_3_in_spec2_y[i] + upu_b_in_spec2_y*m->upu_link2_mass[i] +
-        upu_b_in_spec2_y*m->upu_link3_mass[i]) - (m->upu_acc_3_t_3[i]*upu_e_1_in_axes2_x +
-        upu_c_2*upu_potential_t_4)*(m->upu_h_2_in_spec2_x[i] + m->upu_h_3_in_spec2_x[i] +
-        upu_b_in_spec2_x*m->upu_link2_mass[i] + m->upu_link3_mass[i]*(upu_q_3 +
-        upu_b_in_spec2_x));
+    const real upu_potential_t_4 = v.upu_c_1*m->upu_potential_t[i] +
+        m->upu_potential_t_2[i]*v.upu_s_1;
+    const real upu_b_in_spec2_y = v.upu_c_1*m->upu_potential_t_2[i] -
+        m->upu_potential_t[i]*v.upu_s_1;
+    const real upu_b_in_spec2_x = v.upu_c_2*upu_potential_t_4 +
+        v.upu_e_1_in_axes2_x*m->upu_potential_t_3[i];
+    const real upu_b_in_spec2_z = v.upu_c_2*m->upu_potential_t_3[i] -
+        v.upu_e_1_in_axes2_x*upu_potential_t_4;
+    const real upu_potential_t_5 = v.upu_g_in_axes2_y*(m->upu_h_2_in_spec2_z[i] +
+        m->upu_h_3_in_spec2_z[i] + upu_b_in_spec2_z*m->upu_link2_mass[i] +
+        upu_b_in_spec2_z*m->upu_link3_mass[i]) - v.upu_g_in_axes2_z*(m->upu_h_2_in_spec2_y[i]
+        + m->upu_h_3_in_spec2_y[i] + upu_b_in_spec2_y*m->upu_link2_mass[i] +
+        upu_b_in_spec2_y*m->upu_link3_mass[i]) - v.upu_g_in_axes2_x*(m->upu_h_2_in_spec2_x[i]
+        + m->upu_h_3_in_spec2_x[i] + upu_b_in_spec2_x*m->upu_link2_mass[i] +
+        m->upu_link3_mass[i]*(v.upu_q_3 + upu_b_in_spec2_x));
     /* (potential) */
-    gather(&terms[0*count + k], add, upu_potential_t_6);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(magnitude(upu_root_1_t) > LEAST_1) + UNLESS(magnitude(upu_q_3_t) >
-        LEAST_1);
+    gather(&terms[0*count + k], add, upu_potential_t_5);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1);
 }
 
-INLINE void potential_place_upu(size_t k, size_t at, size_t count, const real *o, verdict *t)
+INLINE void potential_place_upu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
 }
@@ -4597,15 +3972,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 {
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
-    const real potential_t = s[9*w + k];
+    const real potential_t = s[18*w + k];
     const real potential_ = potential_of_legs - potential_t;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
-INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
+INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[10] = {0}, sums[1] = {0};
+    real s[19] = {0}, sums[1] = {0};
     real terms_upu[LEGS(LEGS_OF_upu)] = {0}, o_upu[LEGS(LEGS_OF_upu)] = {0};
     values v;
     potential_before(m, 1, 0, X, &v, s, t);
@@ -4624,7 +3999,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 
 /* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, real *lengths, verdict *t)
+    *s, real *lengths, status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4647,7 +4022,6 @@ INLINE void condition_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
-    stage_upu_H_condition(m, i, &v);
     /* (upu-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real upu_pivot_size = magnitude(v.upu_root_1_t);
@@ -4658,13 +4032,6 @@ INLINE void condition_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
     const real upu_least_pivots = lesser(lesser(lesser(lesser(R(1.25)*root(upu_pivot_size),
         R(1.25)*root(upu_pivot_size_2)), R(1.5624999999999998)*upu_pivot_size_3),
         R(1.25)*upu_pivot_size_4), R(1.25)*upu_pivot_size_5);
-    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real upu_Hk_a_1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
-        v.upu_end_p1_in_axes2_y*v.upu_w_3_x + v.upu_n_c_z*v.upu_q_y - v.upu_n_c_y*v.upu_q_z;
-    const real upu_Hk_a_1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
-        v.upu_end_p1_in_axes2_y*v.upu_w_3_y + v.upu_n_c_x*v.upu_q_z - v.upu_n_c_z*v.upu_q_x;
-    const real upu_Hk_a_1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
-        v.upu_end_p1_in_axes2_y*v.upu_w_3_z + v.upu_n_c_y*v.upu_q_x - v.upu_n_c_x*v.upu_q_y;
     /* (spread) rms distance of the platform points from their centroid */
     const real upu_spread_t = m->b_c_in_platform_x - m->upu_platform_point_x[i];
     const real upu_spread_t_2 = m->b_c_in_platform_y - m->upu_platform_point_y[i];
@@ -4674,9 +4041,9 @@ INLINE void condition_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
     /* (spread) */
     gather(&terms[0*count + k], add, upu_spread_t_4);  /* spread_upu */
     /* (upu-w_3) force part of reciprocal wrench 3 */
-    o[0*count + k] = v.upu_w_3_x;
-    o[1*count + k] = v.upu_w_3_y;
-    o[2*count + k] = v.upu_w_3_z;
+    o[0*count + k] = v.axis_x_upu_axes2_x;
+    o[1*count + k] = v.axis_x_upu_axes2_y;
+    o[2*count + k] = v.axis_x_upu_axes2_z;
     /* (upu-H_a_3) moment of the column's unit force about the platform origin */
     o[3*count + k] = v.upu_H_a_3_x;
     o[4*count + k] = v.upu_H_a_3_y;
@@ -4685,15 +4052,16 @@ INLINE void condition_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
     o[6*count + k] = v.upu_n_c_x;
     o[7*count + k] = v.upu_n_c_y;
     o[8*count + k] = v.upu_n_c_z;
-    /* (upu-Hk_a_1) */
-    o[9*count + k] = upu_Hk_a_1_x;
-    o[10*count + k] = upu_Hk_a_1_y;
-    o[11*count + k] = upu_Hk_a_1_z;
+    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.upu_Hk_a_1_x;
+    o[10*count + k] = v.upu_Hk_a_1_y;
+    o[11*count + k] = v.upu_Hk_a_1_z;
     /* (upu-G) */
     o[12*count + k] = upu_least_pivots;
-    o[14*count + k] = ((v.upu_w_3_x + (v.upu_w_3_y + v.upu_w_3_z)) + (v.upu_H_a_3_x +
-        (v.upu_H_a_3_y + v.upu_H_a_3_z))) + ((v.upu_n_c_x + (v.upu_n_c_y + v.upu_n_c_z)) +
-        ((upu_Hk_a_1_x + upu_Hk_a_1_y) + (upu_Hk_a_1_z + upu_least_pivots)));
+    o[14*count + k] = ((v.axis_x_upu_axes2_x + (v.axis_x_upu_axes2_y + v.axis_x_upu_axes2_z))
+        + (v.upu_H_a_3_x + (v.upu_H_a_3_y + v.upu_H_a_3_z))) + ((v.upu_n_c_x + (v.upu_n_c_y +
+        v.upu_n_c_z)) + ((v.upu_Hk_a_1_x + v.upu_Hk_a_1_y) + (v.upu_Hk_a_1_z +
+        upu_least_pivots)));
     o[13*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
@@ -4701,7 +4069,7 @@ INLINE void condition_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
 }
 
 INLINE void condition_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, real *Hk, real *pivots, verdict *t)
+    *o, real *H, real *Hk, real *pivots, status_flags *t)
 {
     H[i*w + k] = o[0*count + at];
     H[(NU + i)*w + k] = o[1*count + at];
@@ -4721,7 +4089,7 @@ INLINE void condition_place_upu(size_t w, size_t i, size_t k, size_t at, size_t 
 }
 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
-    *lengths, verdict *t)
+    *lengths, status_flags *t)
 {
     /* (spread) */
     const real spread_upu = sums[0*w + k];
@@ -4732,9 +4100,9 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 }
 
 APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
-    *pivots, real *reach, verdict *t)
+    *pivots, real *reach, status_flags *t)
 {
-    real s[9] = {0}, sums[1] = {0};
+    real s[18] = {0}, sums[1] = {0};
     real terms_upu[LEGS(LEGS_OF_upu)] = {0}, o_upu[15*LEGS(LEGS_OF_upu)] = {0};
     clear(reach, NL);
     values v;
@@ -4755,249 +4123,228 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
 
 int tripod_3upu_M(const prepared *m, const real *X, real *M_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    return settled(&why, NV*NV, M_out);
+    return final_status(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
     real X_in[NQ*LANES], M[NV*NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
 }
 
 int tripod_3upu_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    return settled(&why, NV, Z_out);
+    return final_status(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
-    suspect(&why, code);
-    deliver(NV, Z, Z_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, Z, Z_out);
 }
 
 int tripod_3upu_H(const prepared *m, const real *X, real *H_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    return settled(&why, NV*NU, H_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
     real X_in[NQ*LANES], H[NV*NU*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
-    suspect(&why, code);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 int tripod_3upu_Hk(const prepared *m, const real *X, real *Hk_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     Hk_run(m, X, Hk_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    return settled(&why, NV*NC, Hk_out);
+    return final_status(&why, NV*NC, Hk_out);
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
     real X_in[NQ*LANES], Hk[NV*NC*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     Hk_run_lanes(m, X, Hk, &why);
-    suspect(&why, code);
-    deliver(NV*NC, Hk, Hk_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NC, Hk, Hk_out);
 }
 
 int tripod_3upu_constraints(const prepared *m, const real *X, real *constraints_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     constraints_run(m, X, constraints_out, &why);
     if (!is_finite(why.total[0])) {
         check(3, 1, constraints_out, why.overflow);
     }
-    return settled(&why, 3, constraints_out);
+    return final_status(&why, 3, constraints_out);
 }
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
     real X_in[NQ*LANES], constraints[3*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     constraints_run_lanes(m, X, constraints, &why);
-    suspect(&why, code);
-    deliver(3, constraints, constraints_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(3, constraints, constraints_out);
 }
 
 int tripod_3upu_constraint_bias(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     constraint_bias_run(m, X, V, constraint_bias_out, &why);
     if (!is_finite(why.total[0])) {
         check(3, 1, constraint_bias_out, why.overflow);
     }
-    return settled(&why, 3, constraint_bias_out);
+    return final_status(&why, 3, constraint_bias_out);
 }
 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[3*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     constraint_bias_run_lanes(m, X, V, constraint_bias, &why);
-    suspect(&why, code);
-    deliver(3, constraint_bias, constraint_bias_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(3, constraint_bias, constraint_bias_out);
 }
 
 int tripod_3upu_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    return settled(&why, NJ, q_out);
+    return final_status(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
     real X_in[NQ*LANES], q[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    suspect(&why, code);
-    deliver(NJ, q, q_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, q, q_out);
 }
 
 int tripod_3upu_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    return settled(&why, NJ, qd_out);
+    return final_status(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
-    suspect(&why, code);
-    deliver(NJ, qd, qd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qd, qd_out);
 }
 
 int tripod_3upu_joint_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    return settled(&why, NJ, qdd_out);
+    return final_status(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
-    suspect(&why, code);
-    deliver(NJ, qdd, qdd_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NJ, qdd, qdd_out);
 }
 
 int tripod_3upu_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
     real Hk[NV*NC] = {0}, constraint_bias[3] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     dynamics_run(m, X, V, M_out, Z_out, H_out, Hk, constraint_bias, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
@@ -5006,9 +4353,9 @@ int tripod_3upu_dynamics(const prepared *m, const real *X, const real *V, real *
     }
     check(NV*NC, 1, Hk, why.overflow);
     check(3, 1, constraint_bias, why.overflow);
-    settled(&why, NV*NV, M_out);
-    settled(&why, NV, Z_out);
-    return settled(&why, NV*NU, H_out);
+    final_status(&why, NV*NV, M_out);
+    final_status(&why, NV, Z_out);
+    return final_status(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -5016,17 +4363,17 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 {
     real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES],
         constraint_bias[3*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     add_up(NV*NC, Hk, why.total);
     add_up(3, constraint_bias, why.total);
-    suspect(&why, code);
-    deliver(NV*NV, M, M_out);
-    deliver(NV, Z, Z_out);
-    deliver(NV*NU, H, H_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV*NV, M, M_out);
+    copy_side_by_side(NV, Z, Z_out);
+    copy_side_by_side(NV*NU, H, H_out);
 }
 
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -5208,14 +4555,9 @@ int tripod_3upu_inverse_dynamics(const prepared *m, const real *X, const real *V
     static const real no_wrench[NW] = {0};
     real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
         {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -5234,8 +4576,8 @@ int tripod_3upu_inverse_dynamics(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NU, tau, tau_out);
     copy(NC, lambda_, lambda_out);
-    settled(&why, NU, tau_out);
-    return settled(&why, NC, lambda_out);
+    final_status(&why, NU, tau_out);
+    return final_status(&why, NC, lambda_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -5244,7 +4586,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES], beside_1[NV*NV*LANES] = {0},
         solve_1[NV*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -5260,9 +4602,9 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     const real *const lambda_ = solve_1 + NU*LANES;
     add_up(NU, tau, why.total);
     add_up(NC, lambda_, why.total);
-    suspect(&why, code);
-    deliver(NU, tau, tau_out);
-    deliver(NC, lambda_, lambda_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NU, tau, tau_out);
+    copy_side_by_side(NC, lambda_, lambda_out);
 }
 
 int tripod_3upu_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
@@ -5272,14 +4614,9 @@ int tripod_3upu_forward_dynamics(const prepared *m, const real *X, const real *V
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, constraint_bias[3] = {0},
         times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, negative_1[3] = {0}, join_1[9] =
         {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV + NC))];
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -5301,8 +4638,8 @@ int tripod_3upu_forward_dynamics(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    settled(&why, NV, A_out);
-    return settled(&why, NC, lambda_out);
+    final_status(&why, NV, A_out);
+    return final_status(&why, NC, lambda_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -5312,7 +4649,7 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
         Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[3*LANES], times_1[NV*LANES] =
         {0}, add_1[NV*LANES], subtract_1[NV*LANES], negative_1[3*LANES], join_1[9*LANES] = {0},
         solve_1[((NV + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
-    verdict why;
+    status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -5336,9 +4673,9 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     const real *const lambda_ = solve_1 + NV*LANES;
     add_up(NV, A, why.total);
     add_up(NC, lambda_, why.total);
-    suspect(&why, code);
-    deliver(NV, A, A_out);
-    deliver(NC, lambda_, lambda_out);
+    status_side_by_side(&why, code);
+    copy_side_by_side(NV, A, A_out);
+    copy_side_by_side(NC, lambda_, lambda_out);
 }
 
 int tripod_3upu_complete_acceleration(const prepared *m, const real *X, const real *V, const real
@@ -5348,13 +4685,11 @@ int tripod_3upu_complete_acceleration(const prepared *m, const real *X, const re
     (void)X;
     (void)V;
     (void)wrench;
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, A, why.invalid);
+    check_one(NV, A, why.invalid);
     const real *const completed = A;
-    check(NV, 1, completed, why.overflow);
-    copy(NV, completed, completed_out);
-    return settled(&why, NV, completed_out);
+    return finished(NV, completed, completed_out, &why);
 }
 
 int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -5363,32 +4698,13 @@ int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, c
     static const real no_wrench[NW] = {0};
     static const size_t places_add_forces_1[] = {0, 1, 2};
     static const size_t places_forces[] = {0, 1, 2};
-    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
-        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[6*NL] = {0}, actuator[18] = {0},
-        constraint_direction[6*NC] = {0}, add_forces_1[6*NL] = {0}, forces[NL*(NL + NC)] = {0},
-        work[NV*PADDED(NV)];
-    verdict why;
+    real split_1[3] = {0}, split_2[3] = {0}, leg_force[6*NL] = {0}, actuator[18] = {0},
+        constraint_direction[6*NC] = {0}, add_forces_1[6*NL] = {0}, forces[NL*(NL + NC)] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     wrench = optional(NW, wrench, no_wrench, why.invalid);
-    required_run(m, X, V, A, required, H, Hk, &why);
-    for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - wrench[i];
-    }
-    beside(NV, NU, NC, H, Hk, beside_1);
-    eliminate_6(1, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, unsure_solve_1, why.total);
-    if (unsure_solve_1[0] > 0) {
-        set_matrix(NV, 1, beside_1, work);
-        solve_apart(NV, subtract_1, work, solve_1, why.singular);
-        check(NV, 1, solve_1, why.overflow);
-    }
-    const real *const split_1 = solve_1;
-    const real *const split_2 = solve_1 + 3;
+    flag_status(tripod_3upu_inverse_dynamics(m, X, V, A, wrench, split_1, split_2), &why);
     legs_run(m, X, V, A, leg_force, actuator, constraint_direction, &why);
     for (size_t i = 0; i < 6*NL; ++i) {
         add_forces_1[i] = leg_force[i];
@@ -5398,22 +4714,16 @@ int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, c
         forces[i] = add_forces_1[i];
     }
     add_forces(NL, 6, 1, places_forces, split_2, constraint_direction, forces);
-    check(NL*(NL + NC), 1, forces, why.overflow);
-    copy(NL*(NL + NC), forces, forces_out);
-    return settled(&why, NL*(NL + NC), forces_out);
+    return finished(NL*(NL + NC), forces, forces_out, &why);
 }
 
 int tripod_3upu_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
     half_form(NV, 1, V, M, kinetic);
@@ -5422,8 +4732,8 @@ int tripod_3upu_energy(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    settled(&why, 1, kinetic_out);
-    return settled(&why, 1, potential_out);
+    final_status(&why, 1, kinetic_out);
+    return final_status(&why, 1, potential_out);
 }
 
 int tripod_3upu_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -5433,9 +4743,9 @@ int tripod_3upu_condition(const prepared *m, const real *X, real *sigma_out, rea
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
@@ -5456,8 +4766,8 @@ int tripod_3upu_condition(const prepared *m, const real *X, real *sigma_out, rea
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NU, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NU, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int tripod_3upu_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
@@ -5468,9 +4778,9 @@ int tripod_3upu_condition_constrained(const prepared *m, const real *X, real *si
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
@@ -5491,8 +4801,8 @@ int tripod_3upu_condition_constrained(const prepared *m, const real *X, real *si
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    settled(&why, NV, sigma_out);
-    return settled(&why, NL, legs_out);
+    final_status(&why, NV, sigma_out);
+    return final_status(&why, NL, legs_out);
 }
 
 int tripod_3upu_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -5505,13 +4815,12 @@ int tripod_3upu_manipulability(const prepared *m, const real *X, real *measure_o
         {0}, choose_length_2[1] = {0}, divide_rows_2[NV*NC] = {0}, transposed_1[NC*NV] = {0},
         null_basis_1[NV*NC] = {0}, transposed_2[NC*NV] = {0}, product_1[NC*NU] = {0},
         singular_values_1[NC] = {0}, measure[1] = {0}, isotropy[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -5521,9 +4830,8 @@ int tripod_3upu_manipulability(const prepared *m, const real *X, real *measure_o
         divide_rows_1[i] = H[i];
     }
     divide_rows(NU, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
-    const real *const entry_2 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_2[i] = entry_2[i] - entry_2[i];
+        subtract_2[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_2[i] = subtract_2[i] > 0 ? subtract_2[i] : lengths[i] > TINY*lengths[1 + i]
@@ -5545,8 +4853,8 @@ int tripod_3upu_manipulability(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    settled(&why, 1, measure_out);
-    return settled(&why, 1, isotropy_out);
+    final_status(&why, 1, measure_out);
+    return final_status(&why, 1, isotropy_out);
 }
 
 int tripod_3upu_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -5556,14 +4864,13 @@ int tripod_3upu_singularity_distance(const prepared *m, const real *X, real *act
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
         beside_1[NV*NV] = {0}, subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] =
         {0}, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
     beside(NV, NU, NC, H, Hk, beside_1);
-    const real *const entry_1 = lengths;
     for (size_t i = 0; i < 1; ++i) {
-        subtract_1[i] = entry_1[i] - entry_1[i];
+        subtract_1[i] = lengths[i] - lengths[i];
     }
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
@@ -5581,21 +4888,18 @@ int tripod_3upu_singularity_distance(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    settled(&why, 1, actuators_out);
-    return settled(&why, 1, legs_out);
+    final_status(&why, 1, actuators_out);
+    return final_status(&why, 1, legs_out);
 }
 
-static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
+static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
+    *residual_out)
 {
     real q[NJ] = {0}, q_of_inverse_kinematics_from_2[3] = {0}, subtract_1[NU] = {0}, constraints[3] =
-        {0}, negative_1[3] = {0}, gap[6] = {0};
-    verdict why;
+        {0}, negative_1[3] = {0}, residual[6] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(q_actuated, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NU, 1, q_actuated, why.invalid);
-    }
+    check_two(NQ, X, NU, q_actuated, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     take(3, 1, tripod_3upu_ACTUATED, q, q_of_inverse_kinematics_from_2);
     for (size_t i = 0; i < NU; ++i) {
@@ -5605,36 +4909,32 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     for (size_t i = 0; i < 3; ++i) {
         negative_1[i] = -constraints[i];
     }
-    beside(1, NU, 3, subtract_1, negative_1, gap);
-    check(6, 1, gap, why.overflow);
-    copy(6, gap, gap_out);
-    return settled(&why, 6, gap_out);
+    beside(1, NU, 3, subtract_1, negative_1, residual);
+    return finished(6, residual, residual_out, &why);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     H_run(m, X, H, &why);
     Hk_run(m, X, Hk, &why);
     beside(NV, NU, NC, H, Hk, slope);
-    check(NV*NV, 1, slope, why.overflow);
-    copy(NV*NV, slope, slope_out);
-    return settled(&why, NV*NV, slope_out);
+    return finished(NV*NV, slope, slope_out, &why);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
+static int search_pose_residual(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
     enum { N = 6, TRIALS = 12 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = mismatch_one(m, found, q_actuated, gap);
-    size = largest(gap, N);
+    code = pose_residual_one(m, found, q_actuated, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -5646,21 +4946,21 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = mismatch_one(m, trial, q_actuated, next);
+            tried = pose_residual_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > CLOSED/10)) {
             break;
@@ -5674,56 +4974,48 @@ int tripod_3upu_forward_kinematics(const prepared *m, const real *q_actuated, co
     *X_out)
 {
     real X[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(q_actuated, NU) + total(X0, NQ);
-    if (!is_finite(total_in)) {
-        check(NU, 1, q_actuated, why.invalid);
-        check(NQ, 1, X0, why.invalid);
-    }
-    blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    check_two(NU, q_actuated, NQ, X0, why.invalid);
+    flag_status(search_pose_residual(m, q_actuated, X0, X), &why);
+    return finished(NQ, X, X_out, &why);
 }
 
-static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
+static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
 {
-    real constraints[3] = {0}, gap[NC] = {0};
-    verdict why;
+    real constraints[3] = {0}, residual[NC] = {0};
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < NC; ++i) {
-        gap[i] = -constraints[i];
+        residual[i] = -constraints[i];
     }
-    check(NC, 1, gap, why.overflow);
-    copy(NC, gap, gap_out);
-    return settled(&why, NC, gap_out);
+    return finished(NC, residual, residual_out, &why);
 }
 
 static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     Hk_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    return settled(&why, NV*NC, slope_out);
+    return final_status(&why, NV*NC, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
-static int search_constraint_gap(const prepared *m, const real *start, real *found)
+static int search_constraint_residual(const prepared *m, const real *start, real *found)
 {
     enum { N = NC, TRIALS = 1 };
-    real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
+    real residual[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    code = constraint_gap_one(m, found, gap);
-    size = largest(gap, N);
+    code = constraint_residual_one(m, found, residual);
+    size = largest(residual, N);
     for (int steps = 0; steps < 50 && code == OK && size > MET; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
@@ -5735,21 +5027,21 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
             for (size_t j = 0; j < NV; ++j) {
                 a[i*(NV + 1) + j] = slope[j*N + i];
             }
-            a[i*(NV + 1) + NV] = gap[i];
+            a[i*(NV + 1) + NV] = residual[i];
         }
         least_squares(N, NV, a, step);
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            tried = constraint_gap_one(m, trial, next);
+            tried = constraint_residual_one(m, trial, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
             break;
         }
         memcpy(found, trial, sizeof trial);
-        memcpy(gap, next, sizeof gap);
-        size = largest(gap, N);
+        memcpy(residual, next, sizeof residual);
+        size = largest(residual, N);
         code = tried;
         if (TRIALS == 1 && !(largest(step, NV) > MET/10)) {
             break;
@@ -5762,13 +5054,11 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 int tripod_3upu_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
-    blame(search_constraint_gap(m, X, projected), &why);
-    check(NQ, 1, projected, why.overflow);
-    copy(NQ, projected, projected_out);
-    return settled(&why, NQ, projected_out);
+    check_one(NQ, X, why.invalid);
+    flag_status(search_constraint_residual(m, X, projected), &why);
+    return finished(NQ, projected, projected_out, &why);
 }
 
 int tripod_3upu_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5777,289 +5067,202 @@ int tripod_3upu_dissipation(const prepared *m, const real *X, const real *V, rea
     (void)m;
     (void)X;
     real subtract_1[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NV, 1, V, why.invalid);
+    check_one(NV, V, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
-    check(1, 1, dissipation, why.overflow);
-    copy(1, dissipation, dissipation_out);
-    return settled(&why, 1, dissipation_out);
+    return finished(1, dissipation, dissipation_out, &why);
 }
 
 int tripod_3upu_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
-    check(NV, 1, momentum, why.overflow);
-    copy(NV, momentum, momentum_out);
-    return settled(&why, NV, momentum_out);
+    return finished(NV, momentum, momentum_out, &why);
 }
 
 int tripod_3upu_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     real q[NJ] = {0}, margins[NJ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    return settled(&why, NJ, margins_out);
+    return final_status(&why, NJ, margins_out);
 }
 
 int tripod_3upu_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
-    check(1, 1, within, why.overflow);
-    copy(1, within, within_out);
-    return settled(&why, 1, within_out);
+    return finished(1, within, within_out, &why);
 }
 
 int tripod_3upu_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, tripod_3upu_ACTUATED, q_of_inverse_kinematics, q);
-    check(NU, 1, q, why.overflow);
-    copy(NU, q, q_out);
-    return settled(&why, NU, q_out);
+    return finished(NU, q, q_out, &why);
 }
 
 int tripod_3upu_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, tripod_3upu_ACTUATED, qd_of_joint_rates, qd);
-    check(NU, 1, qd, why.overflow);
-    copy(NU, qd, qd_out);
-    return settled(&why, NU, qd_out);
+    return finished(NU, qd, qd_out, &why);
 }
 
 int tripod_3upu_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NV, 1, A, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NV, A, why.invalid);
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, tripod_3upu_ACTUATED, qdd_of_joint_accelerations, qdd);
-    check(NU, 1, qdd, why.overflow);
-    copy(NU, qdd, qdd_out);
-    return settled(&why, NU, qdd_out);
+    return finished(NU, qdd, qdd_out, &why);
 }
 
 int tripod_3upu_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-        check(NU, 1, tau, why.invalid);
-    }
+    check_three(NQ, X, NV, V, NU, tau, why.invalid);
     H_run(m, X, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
-    check(1, 1, power, why.overflow);
-    copy(1, power, power_out);
-    return settled(&why, 1, power_out);
+    return finished(1, power, power_out, &why);
 }
 
 int tripod_3upu_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    check(NQ, 1, X, why.invalid);
+    check_one(NQ, X, why.invalid);
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
-    check(9, 1, R, why.overflow);
-    copy(9, R, R_out);
-    return settled(&why, 9, R_out);
+    return finished(9, R, R_out, &why);
 }
 
 int tripod_3upu_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(R, 9);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(9, 1, R, why.invalid);
-    }
+    check_two(3, t, 9, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int tripod_3upu_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(V, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, V, why.invalid);
-    }
+    check_two(NQ, X, NV, V, why.invalid);
     const real *const V_from_3 = V + 3;
     const real *const X_from_3 = X + 3;
     quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
-    const real *const V_from_0 = V;
-    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
-    check(NQ, 1, X_dot, why.overflow);
-    copy(NQ, X_dot, X_dot_out);
-    return settled(&why, NQ, X_dot_out);
+    beside(1, 3, 4, V, quaternion_rate_1, X_dot);
+    return finished(NQ, X_dot, X_dot_out, &why);
 }
 
 int tripod_3upu_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(t, 3) + total(rpy, 3);
-    if (!is_finite(total_in)) {
-        check(3, 1, t, why.invalid);
-        check(3, 1, rpy, why.invalid);
-    }
+    check_two(3, t, 3, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
     const real *const X = join_1;
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 int tripod_3upu_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X, NQ) + total(step, NV);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X, why.invalid);
-        check(NV, 1, step, why.invalid);
-    }
-    const real *const X_from_0 = X;
+    check_two(NQ, X, NV, step, why.invalid);
     const real *const X_from_3 = X + 3;
-    const real *const step_from_0 = step;
     const real *const step_from_3 = step + 3;
     turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X_from_0[i] + step_from_0[i];
+        add_1[i] = X[i] + step[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
-    check(NQ, 1, X_moved, why.overflow);
-    copy(NQ, X_moved, X_moved_out);
-    return settled(&why, NQ, X_moved_out);
+    return finished(NQ, X_moved, X_moved_out, &why);
 }
 
 int tripod_3upu_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
-    verdict why;
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
+    check_two(NQ, X0, NQ, X1, why.invalid);
     const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
     const real *const X1_from_3 = X1 + 3;
     turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
+        subtract_1[i] = X1[i] - X0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
-    check(NV, 1, step, why.overflow);
-    copy(NV, step, step_out);
-    return settled(&why, NV, step_out);
+    return finished(NV, step, step_out, &why);
 }
 
 int tripod_3upu_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
-        turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
-    verdict why;
+    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    status_flags why;
     start(1, &why);
-    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
-    if (!is_finite(total_in)) {
-        check(NQ, 1, X0, why.invalid);
-        check(NQ, 1, X1, why.invalid);
-        check(1, 1, s, why.invalid);
-    }
-    const real *const X0_from_0 = X0;
-    const real *const X0_from_3 = X0 + 3;
-    const real *const X1_from_0 = X1;
-    const real *const X1_from_3 = X1 + 3;
-    turn_between(X0_from_3, X1_from_3, turn_between_1);
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
-    }
-    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
+    check_three(NQ, X0, NQ, X1, 1, s, why.invalid);
+    flag_status(tripod_3upu_difference(X0, X1, join_1), &why);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const X0_from_0_2 = X0;
     const real *const X0_from_3_2 = X0 + 3;
-    const real *const scale_1_from_0 = scale_1;
     const real *const scale_1_from_3 = scale_1 + 3;
     turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
+        add_1[i] = X0[i] + scale_1[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
-    check(NQ, 1, X, why.overflow);
-    copy(NQ, X, X_out);
-    return settled(&why, NQ, X_out);
+    return finished(NQ, X, X_out, &why);
 }
 
 /* ---- one state, and batches ---- */

@@ -140,7 +140,7 @@ int tripod_3upu_M(const tripod_3upu_model *model, const tripod_3upu_real *X, tri
 size_t tripod_3upu_M_batch(const tripod_3upu_model *model, size_t n, const tripod_3upu_real *X,
     tripod_3upu_real *M, int *status);
 
-/* Velocity and gravity terms Z. 849 mul, 618 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 858 mul, 624 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int tripod_3upu_Z(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *Z);
@@ -167,7 +167,7 @@ int tripod_3upu_constraints(const tripod_3upu_model *model, const tripod_3upu_re
 size_t tripod_3upu_constraints_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, tripod_3upu_real *residual, int *status);
 
-/* The vector bias in Hk^T A + bias = 0. 495 mul, 318 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* The vector bias in Hk^T A + bias = 0. 498 mul, 318 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: bias (NC). */
 int tripod_3upu_constraint_bias(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *bias);
@@ -181,14 +181,14 @@ int tripod_3upu_inverse_kinematics(const tripod_3upu_model *model, const tripod_
 size_t tripod_3upu_inverse_kinematics_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, tripod_3upu_real *q, int *status);
 
-/* Rates of all joints. 366 mul, 237 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 369 mul, 237 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int tripod_3upu_joint_rates(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *rates);
 size_t tripod_3upu_joint_rates_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, const tripod_3upu_real *V, tripod_3upu_real *rates, int *status);
 
-/* Accelerations of all joints. 558 mul, 375 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 555 mul, 375 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int tripod_3upu_joint_accelerations(const tripod_3upu_model *model, const tripod_3upu_real *X,
     const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real *accelerations);
@@ -196,7 +196,7 @@ size_t tripod_3upu_joint_accelerations_batch(const tripod_3upu_model *model, siz
     tripod_3upu_real *X, const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1611 mul, 1149 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1584 mul, 1131 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3upu_dynamics(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *M, tripod_3upu_real *Z, tripod_3upu_real *H);
@@ -204,7 +204,7 @@ size_t tripod_3upu_dynamics_batch(const tripod_3upu_model *model, size_t n, cons
     *X, const tripod_3upu_real *V, tripod_3upu_real *M, tripod_3upu_real *Z, tripod_3upu_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 957 mul, 714 add, 12 div, 6 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 945 mul, 708 add, 12 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU), lambda (NC). */
 int tripod_3upu_inverse_dynamics(const tripod_3upu_model *model, const tripod_3upu_real *X, const
@@ -214,7 +214,7 @@ size_t tripod_3upu_inverse_dynamics_batch(const tripod_3upu_model *model, size_t
     tripod_3upu_real *X, const tripod_3upu_real *V, const tripod_3upu_real *A, const
     tripod_3upu_real *wrench, tripod_3upu_real *tau, tripod_3upu_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1611 mul, 1149 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 1584 mul, 1131 add, 12 div, 6
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV), lambda (NC). */
 int tripod_3upu_forward_dynamics(const tripod_3upu_model *model, const tripod_3upu_real *X, const
@@ -235,7 +235,7 @@ size_t tripod_3upu_complete_acceleration_batch(const tripod_3upu_model *model, s
     tripod_3upu_real *wrench, tripod_3upu_real *completed, int *status);
 
 /* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
-   give the forces of inverse_dynamics. 810 mul, 570 add, 12 div, 6 sqrt, 0 trig; inverse dynamics
+   give the forces of inverse_dynamics. 804 mul, 573 add, 12 div, 6 sqrt, 0 trig; inverse dynamics
    apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 6). */
 int tripod_3upu_leg_reactions(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, const tripod_3upu_real *A, const tripod_3upu_real *wrench,
@@ -338,14 +338,14 @@ int tripod_3upu_actuator_positions(const tripod_3upu_model *model, const tripod_
 size_t tripod_3upu_actuator_positions_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, tripod_3upu_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 366 mul, 237 add, 12 div, 6 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 369 mul, 237 add, 12 div, 6 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int tripod_3upu_actuator_rates(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *rates);
 size_t tripod_3upu_actuator_rates_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, const tripod_3upu_real *V, tripod_3upu_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 558 mul, 375 add, 12 div, 6 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 555 mul, 375 add, 12 div, 6 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int tripod_3upu_actuator_accelerations(const tripod_3upu_model *model, const tripod_3upu_real *X,
     const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real *accelerations);

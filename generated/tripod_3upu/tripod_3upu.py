@@ -665,9 +665,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6,
-                J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, platform_mass,),
             (
                 (_upu,
         (upu_J_group_2_in_axes2_xx, upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz,
@@ -706,9 +706,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
-                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z,),
             (
                 (_upu,
         (upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz, upu_J_group_2_in_axes2_yz,
@@ -1534,11 +1534,11 @@ def _times(a, b):
     return np.einsum("ijs,js->is", a, b)
 
 
-def _with_forces(a, amounts, directions, legs):
-    """a, to whose row of a leg its directions times amounts are added."""
+def _with_forces(a, coefficients, directions, legs):
+    """a, to whose row of a leg its directions times coefficients are added."""
     result = np.array(a)
     for k, leg in enumerate(legs):
-        result[leg] += amounts[k] * directions[k]
+        result[leg] += coefficients[k] * directions[k]
     return result
 
 
@@ -1803,8 +1803,8 @@ def _search(m, residual, slope, X, given, guess, halving):
     residual is smaller, or taken as they are.  NaN where no pose is found.
     """
     X = np.array(X)
-    gap = np.array(_at(m, residual, X, given, slice(None)))
-    size = np.max(np.abs(gap), axis=0, initial=0.0)
+    residuals = np.array(_at(m, residual, X, given, slice(None)))
+    size = np.max(np.abs(residuals), axis=0, initial=0.0)
     open_ = np.isfinite(size) & np.isfinite(X).all(axis=0)
     size[~open_] = np.inf
     for _ in range(50):
@@ -1812,7 +1812,7 @@ def _search(m, residual, slope, X, given, guess, halving):
         if not at.size:
             break
         a = _at(m, slope, X, guess, at)
-        step = _least_squares(np.swapaxes(a, 0, 1), gap[:, at], 1e-10)
+        step = _least_squares(np.swapaxes(a, 0, 1), residuals[:, at], 1e-10)
         stopped = ~np.isfinite(step).all(axis=0)
         size[at[stopped]] = np.inf
         open_[at[stopped]] = False
@@ -1820,11 +1820,11 @@ def _search(m, residual, slope, X, given, guess, halving):
         for _ in range(12 if halving else 1):
             trial = np.array(X)
             trial[:, at] = _moved(X[:, at], step)
-            trial_gap = _at(m, residual, trial, given, at)
-            trial_size = np.max(np.abs(trial_gap), axis=0, initial=0.0)
+            trial_residuals = _at(m, residual, trial, given, at)
+            trial_size = np.max(np.abs(trial_residuals), axis=0, initial=0.0)
             good = trial_size < size[at] if halving else np.ones(at.size, dtype=bool)
             taken = at[good]
-            X[:, taken], gap[:, taken], size[taken] = trial[:, taken], trial_gap[:, good], trial_size[good]
+            X[:, taken], residuals[:, taken], size[taken] = trial[:, taken], trial_residuals[:, good], trial_size[good]
             if not halving:
                 lost = ~np.isfinite(size[taken])
                 size[taken[lost]] = np.inf
@@ -1872,15 +1872,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1611 mul, 1149 add, 12 div, 6 sqrt, 0 trig
+# dynamics: 1584 mul, 1131 add, 12 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2,
-        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-        h_star_in_platform_z, platform_mass,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1964,39 +1963,12 @@ def _run_dynamics(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_upu_xx, M_tt_xy, M_tt_xz, M_tt_upu_yy, M_tt_yz, M_tt_upu_zz, M_ta_xx, M_ta_upu_xy,
         M_ta_upu_xz, M_ta_upu_yx, M_ta_yy, M_ta_upu_yz, M_ta_upu_zx, M_ta_upu_zy, M_ta_zz,
@@ -2053,8 +2025,9 @@ def _run_dynamics(m, X, V):
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_q_3 = 1.0/upu_q_3
         upu_c_2 = inv_upu_q_3*upu_root_1
-        # (upu-S_dot) velocity of the connection point
+        # (upu-q_2) displacement of joint 2
         upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        # (upu-S_dot) velocity of the connection point
         axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
         axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
         axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
@@ -2090,6 +2063,10 @@ def _run_dynamics(m, X, V):
         upu_S_dot_in_axes2_x = (
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
+        )
+        upu_S_dot_in_axes2_z = (
+        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z
         )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
@@ -2144,9 +2121,12 @@ def _run_dynamics(m, X, V):
         # (upu-eta_1) rate at which the joints turn along moment direction 1
         upu_eta_1 = omega_x*upu_n_m1_x + omega_y*upu_n_m1_y + omega_z*upu_n_m1_z
         # (upu-qd_1) rate of joint 1
-        upu_qd_1 = (
-        upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z - upu_eta_1*upu_n_c_in_axes2_z)
+        upu_qd_1 = upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z - upu_eta_1*upu_n_c_in_axes2_z)
+        upu_omega_in_axes2_x = (
+        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
+        )
+        upu_omega_in_axes2_y = (
+        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
@@ -2159,6 +2139,7 @@ def _run_dynamics(m, X, V):
         # (upu-W_2) centripetal tensor of link 2
         upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
         upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
+        upu_W_2_t = upu_qd_2*upu_qd_2
         upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
         # (upu-u_1) centripetal acceleration of the connection point
         upu_u_1_x = omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4
@@ -2175,36 +2156,33 @@ def _run_dynamics(m, X, V):
         )
         # (upu-nd_m1) rate of moment direction 1
         upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
-        upu_omega_in_axes2_x = (
-        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
-        )
-        upu_omega_in_axes2_y = (
-        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
-        )
         upu_omega_in_axes2_z = (
         axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_in_axes2_x = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
-            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
+        upu_nd_m1_t = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z
         )
-        upu_nd_m1_in_axes2_y = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
-            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
+        upu_nd_m1_t_2 = (
+        upu_n_m1_in_axes2_y*upu_omega_in_axes2_z - upu_end_p1_in_axes2_z*upu_omega_in_axes2_x
         )
+        upu_nd_m1_in_axes2_x = -upu_nd_m1_t_2 - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
+        upu_nd_m1_in_axes2_y = upu_nd_m1_t - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
         upu_nu_1_t = (
         upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y + upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
         )
-        upu_nu_1_t_2 = (
+        upu_nu_1_t_2 = upu_omega_in_axes2_z - upu_qd_2
+        upu_nu_1_t_3 = (
         upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
             upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
-            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_nu_1_t_2*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
             upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
-        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2
+        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_3
         # (upu-qdd_1_o) remainder of: acceleration of joint 1
         upu_qdd_1_o_t = upu_w_1_in_axes2_z*(upu_n_c_in_axes2_z*upu_nu_1 - upu_rel_o_in_axes2_z)
+        # (upu-qdd_2) acceleration of joint 2
+        upu_qdd_2_t = upu_bias_t*upu_qd_2
         # (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
         upu_dalpha_alpha_1_in_axes2_xx = upu_e_1_in_axes2_x*upu_o_1_in_axes2_x
         upu_dalpha_alpha_1_t = upu_e_1_in_axes2_x*upu_o_1_t
@@ -2220,30 +2198,30 @@ def _run_dynamics(m, X, V):
         upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t
         upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2_o) remainder of the acceleration tensor of link 2
-        upu_B_2_o_t = upu_bias_t*upu_qd_2
-        upu_B_2_o_t_2 = (
+        upu_B_2_o_t = (
         axis_y_upu_axes2_x*upu_u_1_x + axis_y_upu_axes2_y*upu_u_1_y + axis_y_upu_axes2_z*upu_u_1_z
-            - upu_B_2_o_t
+            - upu_qdd_2_t
         )
-        upu_B_2_o_in_axes2_yx = inv_upu_q_3*upu_B_2_o_t_2
+        upu_B_2_o_in_axes2_yx = inv_upu_q_3*upu_B_2_o_t
         upu_B_2_o_in_axes2_xy = 2.0*upu_W_2_in_axes2_xy - upu_B_2_o_in_axes2_yx
         upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y
         upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x
+        # (upu-acc_3) acceleration of the reference point of link 3, less gravity
+        upu_acc_3_t_4 = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
+        upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
+        upu_g_in_axes2_x = upu_acc_3_t_3*upu_e_1_in_axes2_x + upu_acc_3_t_4*upu_c_2
+        upu_g_in_axes2_y = upu_acc_3_t_4*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
         # (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
         upu_dalpha_acc_3_in_axes2_zx = upu_dalpha_alpha_1_t_2*upu_q_3
         upu_dalpha_acc_3_t = upu_dalpha_alpha_1_in_axes2_yy*upu_q_3
         # (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
         upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*upu_q_3
         # (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        upu_acc_3_o_t = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
-        upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
-        upu_g_in_axes2_x = upu_acc_3_o_t*upu_c_2 + upu_acc_3_t_3*upu_e_1_in_axes2_x
-        upu_g_in_axes2_y = upu_acc_3_o_t*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
         upu_acc_3_o_in_axes2_x = (
         axis_x_upu_axes2_x*upu_u_1_x + axis_x_upu_axes2_y*upu_u_1_y + axis_x_upu_axes2_z*upu_u_1_z
             - upu_g_in_axes2_x
         )
-        upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_B_2_o_t_2 - upu_g_in_axes2_y
+        upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_qdd_2_t - upu_g_in_axes2_y
         upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_q_3 - upu_bias_t_2 - upu_g_in_axes2_z
         # (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
         upu_dalpha_phi_3_in_axes2_xy = upu_dalpha_alpha_1_in_axes2_yy*upu_h_3_in_spec2_y
@@ -2252,27 +2230,29 @@ def _run_dynamics(m, X, V):
         # (upu-f_3_o) remainder of: inertia force of link 3 less its weight
         upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
         upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
-        upu_f_3_o_t_3 = upu_qd_2*upu_qd_2
         upu_f_3_o_in_axes2_x = (
         upu_acc_3_o_in_axes2_x*upu_link3_mass + upu_alpha_1_o_in_axes2_y*upu_h_3_in_spec2_y -
-            upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_x*(upu_f_3_o_t_2 +
-            upu_f_3_o_t_3)
+            upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_x*(upu_W_2_t +
+            upu_f_3_o_t_2)
         )
         upu_f_3_o_in_axes2_y = (
         upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_y*upu_link3_mass +
-            upu_alpha_1_o_t*upu_h_3_in_spec2_y + upu_h_3_in_spec2_z*(upu_f_3_o_t + upu_f_3_o_t_3)
+            upu_alpha_1_o_t*upu_h_3_in_spec2_y + upu_h_3_in_spec2_z*(upu_W_2_t + upu_f_3_o_t)
         )
         upu_f_3_o_in_axes2_z = (
         upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_z*upu_link3_mass -
             upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_f_3_o_t +
             upu_f_3_o_t_2)
         )
+        # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        upu_mu_2_t = upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z
+        upu_mu_2_t_2 = upu_g_in_axes2_x*upu_h_2_in_spec2_y - upu_g_in_axes2_z*upu_h_2_in_spec2_x
+        upu_mu_2_t_3 = upu_g_in_axes2_x*upu_h_2_in_spec2_z + upu_g_in_axes2_y*upu_h_2_in_spec2_x
         # (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         upu_mu_2_o_in_axes2_x = (
-        upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
+        upu_mu_2_t + upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
             upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
-            upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - upu_f_3_o_t_3) +
-            upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z -
+            upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - upu_W_2_t) -
             upu_B_2_o_in_axes2_zx*upu_J_group_2_in_axes2_xy -
             upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_t - upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y -
             upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z
@@ -2280,19 +2260,17 @@ def _run_dynamics(m, X, V):
         upu_mu_2_o_in_axes2_y = (
         upu_B_2_o_in_axes2_zy*upu_J_group_2_in_axes2_xy +
             upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_y +
-            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_x -
+            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y - upu_mu_2_t_2 -
             upu_B_2_o_in_axes2_xy*upu_J_group_2_in_axes2_yz -
             upu_B_2_o_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_J_group_2_in_axes2_xz*(upu_f_3_o_t
-            - upu_f_3_o_t_3) - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x -
-            upu_g_in_axes2_x*upu_h_2_in_spec2_y
+            - upu_W_2_t) - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x
         )
         upu_mu_2_o_in_axes2_z = (
         upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_o_t -
             upu_f_3_o_t_2) + upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
             upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_x
-            - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy -
-            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t - upu_g_in_axes2_x*upu_h_2_in_spec2_z -
-            upu_g_in_axes2_y*upu_h_2_in_spec2_x
+            - upu_mu_2_t_3 - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy -
+            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t
         )
         # (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_q_3
@@ -2818,8 +2796,36 @@ def _run_M(m, X):
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_q_3 = 1.0/upu_q_3
         upu_c_2 = inv_upu_q_3*upu_root_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        # (upu-q_2) displacement of joint 2
         upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        # (upu-S_dot) velocity of the connection point
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1
+        axis_y_upu_axes2_x = (
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy -
+            upu_base_frame_xz*upu_c_2
+        )
+        axis_y_upu_axes2_y = (
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy -
+            upu_base_frame_yz*upu_c_2
+        )
+        axis_y_upu_axes2_z = (
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy -
+            upu_base_frame_zz*upu_c_2
+        )
+        axis_x_upu_axes2_x = (
+        axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
+        )
+        axis_x_upu_axes2_y = (
+        axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
+        )
+        axis_x_upu_axes2_z = (
+        axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
+        )
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
@@ -2845,32 +2851,6 @@ def _run_M(m, X):
         upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
         upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
         upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
-        upu_n_m1_t_6 = upu_c_1*upu_e_1_in_axes2_x
-        upu_n_m1_t_7 = upu_e_1_in_axes2_x*upu_s_1
-        axis_y_upu_axes2_x = (
-        upu_base_frame_xx*upu_n_m1_t_6 + upu_base_frame_xy*upu_n_m1_t_7 -
-            upu_base_frame_xz*upu_c_2
-        )
-        axis_y_upu_axes2_y = (
-        upu_base_frame_yx*upu_n_m1_t_6 + upu_base_frame_yy*upu_n_m1_t_7 -
-            upu_base_frame_yz*upu_c_2
-        )
-        axis_y_upu_axes2_z = (
-        upu_base_frame_zx*upu_n_m1_t_6 + upu_base_frame_zy*upu_n_m1_t_7 -
-            upu_base_frame_zz*upu_c_2
-        )
-        axis_x_upu_axes2_x = (
-        axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
-        )
-        axis_x_upu_axes2_y = (
-        axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
-        )
-        axis_x_upu_axes2_z = (
-        axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
-        )
         upu_n_m1_x = (
         axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
         )
@@ -3223,14 +3203,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 849 mul, 618 add, 12 div, 6 sqrt, 0 trig
+# Z: 858 mul, 624 add, 12 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3286,6 +3266,22 @@ def _run_Z(m, X, V):
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
     h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_6*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_6*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_6*R_zy
+    J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
+    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
+    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3294,39 +3290,12 @@ def _run_Z(m, X, V):
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    Z_q_t_2 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    Z_q_t_3 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    Z_q_in_platform_x = (
-    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
-        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
-    )
-    Z_q_in_platform_y = (
-    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
-        - g_in_platform_x*h_star_in_platform_z
-    )
-    Z_q_in_platform_z = (
-    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
-        - g_in_platform_y*h_star_in_platform_x
-    )
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y + gravity_y*h_star_z - Z_q_t_2*omega_z - gravity_z*h_star_y
+    Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
+    Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     Z_t_upu_x, Z_t_upu_y, Z_t_upu_z, Z_a_upu_x, Z_a_upu_y, Z_a_upu_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -3377,8 +3346,9 @@ def _run_Z(m, X, V):
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_q_3 = 1.0/upu_q_3
         upu_c_2 = inv_upu_q_3*upu_root_1
-        # (upu-S_dot) velocity of the connection point
+        # (upu-q_2) displacement of joint 2
         upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        # (upu-S_dot) velocity of the connection point
         axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
         axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
         axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
@@ -3415,6 +3385,10 @@ def _run_Z(m, X, V):
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
         )
+        upu_S_dot_in_axes2_z = (
+        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z
+        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
@@ -3441,6 +3415,15 @@ def _run_Z(m, X, V):
         upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
         upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
         upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
+        upu_n_m1_x = (
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_y = (
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y - axis_x_upu_axes2_y*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_z = (
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
+        )
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
@@ -3449,18 +3432,14 @@ def _run_Z(m, X, V):
         upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
         upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-eta_1) rate at which the joints turn along moment direction 1
-        upu_eta_1 = (
-        omega_x*(axis_y_upu_axes2_x*upu_n_m1_in_axes2_y -
-            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y) +
-            omega_y*(axis_y_upu_axes2_y*upu_n_m1_in_axes2_y -
-            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y) +
-            omega_z*(axis_y_upu_axes2_z*upu_n_m1_in_axes2_y -
-            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y)
-        )
+        upu_eta_1 = omega_x*upu_n_m1_x + omega_y*upu_n_m1_y + omega_z*upu_n_m1_z
         # (upu-qd_1) rate of joint 1
-        upu_qd_1 = (
-        upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z - upu_eta_1*upu_n_c_in_axes2_z)
+        upu_qd_1 = upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z - upu_eta_1*upu_n_c_in_axes2_z)
+        upu_omega_in_axes2_x = (
+        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
+        )
+        upu_omega_in_axes2_y = (
+        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
@@ -3473,6 +3452,7 @@ def _run_Z(m, X, V):
         # (upu-W_2) centripetal tensor of link 2
         upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
         upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
+        upu_W_2_t = upu_qd_2*upu_qd_2
         upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
         # (upu-u_1) centripetal acceleration of the connection point
         upu_u_1_x = omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4
@@ -3489,36 +3469,33 @@ def _run_Z(m, X, V):
         )
         # (upu-nd_m1) rate of moment direction 1
         upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
-        upu_omega_in_axes2_x = (
-        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
-        )
-        upu_omega_in_axes2_y = (
-        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
-        )
         upu_omega_in_axes2_z = (
         axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_in_axes2_x = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
-            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
+        upu_nd_m1_t = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z
         )
-        upu_nd_m1_in_axes2_y = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
-            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
+        upu_nd_m1_t_2 = (
+        upu_n_m1_in_axes2_y*upu_omega_in_axes2_z - upu_end_p1_in_axes2_z*upu_omega_in_axes2_x
         )
+        upu_nd_m1_in_axes2_x = -upu_nd_m1_t_2 - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
+        upu_nd_m1_in_axes2_y = upu_nd_m1_t - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
         upu_nu_1_t = (
         upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y + upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
         )
-        upu_nu_1_t_2 = (
+        upu_nu_1_t_2 = upu_omega_in_axes2_z - upu_qd_2
+        upu_nu_1_t_3 = (
         upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
             upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
-            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_nu_1_t_2*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
             upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
-        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2
+        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_3
         # (upu-qdd_1_o) remainder of: acceleration of joint 1
         upu_qdd_1_o_t = upu_w_1_in_axes2_z*(upu_n_c_in_axes2_z*upu_nu_1 - upu_rel_o_in_axes2_z)
+        # (upu-qdd_2) acceleration of joint 2
+        upu_qdd_2_t = upu_bias_t*upu_qd_2
         # (upu-alpha_1_o) remainder of: angular acceleration of link 1
         upu_alpha_1_o_t = upu_e_1_in_axes2_x*upu_qdd_1_o_t
         upu_alpha_1_o_in_axes2_y = upu_c_2*upu_qdd_1_o_t
@@ -3526,50 +3503,52 @@ def _run_Z(m, X, V):
         upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t
         upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2_o) remainder of the acceleration tensor of link 2
-        upu_B_2_o_t = upu_bias_t*upu_qd_2
-        upu_B_2_o_t_2 = (
+        upu_B_2_o_t = (
         axis_y_upu_axes2_x*upu_u_1_x + axis_y_upu_axes2_y*upu_u_1_y + axis_y_upu_axes2_z*upu_u_1_z
-            - upu_B_2_o_t
+            - upu_qdd_2_t
         )
-        upu_B_2_o_in_axes2_yx = inv_upu_q_3*upu_B_2_o_t_2
+        upu_B_2_o_in_axes2_yx = inv_upu_q_3*upu_B_2_o_t
         upu_B_2_o_in_axes2_xy = 2.0*upu_W_2_in_axes2_xy - upu_B_2_o_in_axes2_yx
         upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y
         upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x
-        # (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        upu_acc_3_o_t = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
+        # (upu-acc_3) acceleration of the reference point of link 3, less gravity
+        upu_acc_3_t_4 = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
         upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
-        upu_g_in_axes2_x = upu_acc_3_o_t*upu_c_2 + upu_acc_3_t_3*upu_e_1_in_axes2_x
-        upu_g_in_axes2_y = upu_acc_3_o_t*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
+        upu_g_in_axes2_x = upu_acc_3_t_3*upu_e_1_in_axes2_x + upu_acc_3_t_4*upu_c_2
+        upu_g_in_axes2_y = upu_acc_3_t_4*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
+        # (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         upu_acc_3_o_in_axes2_x = (
         axis_x_upu_axes2_x*upu_u_1_x + axis_x_upu_axes2_y*upu_u_1_y + axis_x_upu_axes2_z*upu_u_1_z
             - upu_g_in_axes2_x
         )
-        upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_B_2_o_t_2 - upu_g_in_axes2_y
+        upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_qdd_2_t - upu_g_in_axes2_y
         upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_q_3 - upu_bias_t_2 - upu_g_in_axes2_z
         # (upu-f_3_o) remainder of: inertia force of link 3 less its weight
         upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
         upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
-        upu_f_3_o_t_3 = upu_qd_2*upu_qd_2
         upu_f_3_o_in_axes2_x = (
         upu_acc_3_o_in_axes2_x*upu_link3_mass + upu_alpha_1_o_in_axes2_y*upu_h_3_in_spec2_y -
-            upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_x*(upu_f_3_o_t_2 +
-            upu_f_3_o_t_3)
+            upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_x*(upu_W_2_t +
+            upu_f_3_o_t_2)
         )
         upu_f_3_o_in_axes2_y = (
         upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_y*upu_link3_mass +
-            upu_alpha_1_o_t*upu_h_3_in_spec2_y + upu_h_3_in_spec2_z*(upu_f_3_o_t + upu_f_3_o_t_3)
+            upu_alpha_1_o_t*upu_h_3_in_spec2_y + upu_h_3_in_spec2_z*(upu_W_2_t + upu_f_3_o_t)
         )
         upu_f_3_o_in_axes2_z = (
         upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_z*upu_link3_mass -
             upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_f_3_o_t +
             upu_f_3_o_t_2)
         )
+        # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        upu_mu_2_t = upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z
+        upu_mu_2_t_2 = upu_g_in_axes2_x*upu_h_2_in_spec2_y - upu_g_in_axes2_z*upu_h_2_in_spec2_x
+        upu_mu_2_t_3 = upu_g_in_axes2_x*upu_h_2_in_spec2_z + upu_g_in_axes2_y*upu_h_2_in_spec2_x
         # (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         upu_mu_2_o_in_axes2_x = (
-        upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
+        upu_mu_2_t + upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
             upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
-            upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - upu_f_3_o_t_3) +
-            upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z -
+            upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - upu_W_2_t) -
             upu_B_2_o_in_axes2_zx*upu_J_group_2_in_axes2_xy -
             upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_t - upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y -
             upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z
@@ -3577,19 +3556,17 @@ def _run_Z(m, X, V):
         upu_mu_2_o_in_axes2_y = (
         upu_B_2_o_in_axes2_zy*upu_J_group_2_in_axes2_xy +
             upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_y +
-            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_x -
+            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y - upu_mu_2_t_2 -
             upu_B_2_o_in_axes2_xy*upu_J_group_2_in_axes2_yz -
             upu_B_2_o_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_J_group_2_in_axes2_xz*(upu_f_3_o_t
-            - upu_f_3_o_t_3) - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x -
-            upu_g_in_axes2_x*upu_h_2_in_spec2_y
+            - upu_W_2_t) - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x
         )
         upu_mu_2_o_in_axes2_z = (
         upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_o_t -
             upu_f_3_o_t_2) + upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
             upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_x
-            - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy -
-            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t - upu_g_in_axes2_x*upu_h_2_in_spec2_z -
-            upu_g_in_axes2_y*upu_h_2_in_spec2_x
+            - upu_mu_2_t_3 - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy -
+            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t
         )
         # (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_q_3
@@ -3747,37 +3724,47 @@ def _run_H(m, X):
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_q_3 = 1.0/upu_q_3
         upu_c_2 = inv_upu_q_3*upu_root_1
-        # (upu-w_3) force part of reciprocal wrench 3
+        # (upu-q_2) displacement of joint 2
         upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        # (upu-S_dot) velocity of the connection point
         axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
         axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
         axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
-        upu_w_3_t = upu_c_1*upu_e_1_in_axes2_x
-        upu_w_3_t_2 = upu_e_1_in_axes2_x*upu_s_1
+        upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1
         axis_y_upu_axes2_x = (
-        upu_base_frame_xx*upu_w_3_t + upu_base_frame_xy*upu_w_3_t_2 - upu_base_frame_xz*upu_c_2
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy -
+            upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_y = (
-        upu_base_frame_yx*upu_w_3_t + upu_base_frame_yy*upu_w_3_t_2 - upu_base_frame_yz*upu_c_2
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy -
+            upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_z = (
-        upu_base_frame_zx*upu_w_3_t + upu_base_frame_zy*upu_w_3_t_2 - upu_base_frame_zz*upu_c_2
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy -
+            upu_base_frame_zz*upu_c_2
         )
-        upu_w_3_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
-        upu_w_3_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
-        upu_w_3_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
+        axis_x_upu_axes2_x = (
+        axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
+        )
+        axis_x_upu_axes2_y = (
+        axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
+        )
+        axis_x_upu_axes2_z = (
+        axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
+        )
         # (upu-H_a_3) moment of the column's unit force about the platform origin
-        upu_H_a_3_x = upu_q_y*upu_w_3_z - upu_q_z*upu_w_3_y
-        upu_H_a_3_y = upu_q_z*upu_w_3_x - upu_q_x*upu_w_3_z
-        upu_H_a_3_z = upu_q_x*upu_w_3_y - upu_q_y*upu_w_3_x
+        upu_H_a_3_x = axis_x_upu_axes2_z*upu_q_y - axis_x_upu_axes2_y*upu_q_z
+        upu_H_a_3_y = axis_x_upu_axes2_x*upu_q_z - axis_x_upu_axes2_z*upu_q_x
+        upu_H_a_3_z = axis_x_upu_axes2_y*upu_q_x - axis_x_upu_axes2_x*upu_q_y
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8)
         )
         # (upu-w_3) force part of reciprocal wrench 3
-        out_H[_H_upu[0][leg]] = upu_w_3_x
-        out_H[_H_upu[1][leg]] = upu_w_3_y
-        out_H[_H_upu[2][leg]] = upu_w_3_z
+        out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
+        out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
+        out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
         # (upu-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_upu[3][leg]] = upu_H_a_3_x
         out_H[_H_upu[4][leg]] = upu_H_a_3_y
@@ -3871,8 +3858,36 @@ def _run_Hk(m, X):
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_q_3 = 1.0/upu_q_3
         upu_c_2 = inv_upu_q_3*upu_root_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        # (upu-q_2) displacement of joint 2
         upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        # (upu-S_dot) velocity of the connection point
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1
+        axis_y_upu_axes2_x = (
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy -
+            upu_base_frame_xz*upu_c_2
+        )
+        axis_y_upu_axes2_y = (
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy -
+            upu_base_frame_yz*upu_c_2
+        )
+        axis_y_upu_axes2_z = (
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy -
+            upu_base_frame_zz*upu_c_2
+        )
+        axis_x_upu_axes2_x = (
+        axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
+        )
+        axis_x_upu_axes2_y = (
+        axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
+        )
+        axis_x_upu_axes2_z = (
+        axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
+        )
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
@@ -3896,50 +3911,28 @@ def _run_Hk(m, X):
         )
         upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
         upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
+        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
+        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
+        upu_n_m1_x = (
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_y = (
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y - axis_x_upu_axes2_y*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_z = (
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
+        )
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
-        upu_n_c_in_axes2_z = (
-        upu_q_3*(upu_c_2*upu_n_m1_in_axes2_y +
-            upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y)/upu_volume_c_t
-        )
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
         upu_n_c_x = axis_z_upu_axes2_x*upu_n_c_in_axes2_z
         upu_n_c_y = axis_z_upu_axes2_y*upu_n_c_in_axes2_z
         upu_n_c_z = axis_z_upu_axes2_z*upu_n_c_in_axes2_z
         # (upu-Hk_a_1) moment of the column's unit force about the platform origin
-        upu_Hk_a_1_t = upu_c_1*upu_e_1_in_axes2_x
-        upu_Hk_a_1_t_2 = upu_e_1_in_axes2_x*upu_s_1
-        axis_y_upu_axes2_x = (
-        upu_Hk_a_1_t*upu_base_frame_xx + upu_Hk_a_1_t_2*upu_base_frame_xy -
-            upu_base_frame_xz*upu_c_2
-        )
-        axis_y_upu_axes2_y = (
-        upu_Hk_a_1_t*upu_base_frame_yx + upu_Hk_a_1_t_2*upu_base_frame_yy -
-            upu_base_frame_yz*upu_c_2
-        )
-        axis_y_upu_axes2_z = (
-        upu_Hk_a_1_t*upu_base_frame_zx + upu_Hk_a_1_t_2*upu_base_frame_zy -
-            upu_base_frame_zz*upu_c_2
-        )
-        upu_Hk_a_1_x = (
-        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_z*upu_q_y -
-            upu_end_p1_in_axes2_y*(axis_y_upu_axes2_y*axis_z_upu_axes2_z -
-            axis_y_upu_axes2_z*axis_z_upu_axes2_y) - upu_n_c_y*upu_q_z
-        )
-        upu_Hk_a_1_y = (
-        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_x*upu_q_z -
-            upu_end_p1_in_axes2_y*(axis_y_upu_axes2_z*axis_z_upu_axes2_x -
-            axis_y_upu_axes2_x*axis_z_upu_axes2_z) - upu_n_c_z*upu_q_x
-        )
-        upu_Hk_a_1_z = (
-        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_y*upu_q_x -
-            upu_end_p1_in_axes2_y*(axis_y_upu_axes2_x*axis_z_upu_axes2_y -
-            axis_y_upu_axes2_y*axis_z_upu_axes2_x) - upu_n_c_x*upu_q_y
-        )
+        upu_Hk_a_1_x = upu_n_m1_x + upu_n_c_z*upu_q_y - upu_n_c_y*upu_q_z
+        upu_Hk_a_1_y = upu_n_m1_y + upu_n_c_x*upu_q_z - upu_n_c_z*upu_q_x
+        upu_Hk_a_1_z = upu_n_m1_z + upu_n_c_y*upu_q_x - upu_n_c_x*upu_q_y
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
@@ -3956,7 +3949,7 @@ def _run_Hk(m, X):
     return ok, (out_Hk,)
 
 
-# constraint_bias: 495 mul, 318 add, 12 div, 6 sqrt, 0 trig
+# constraint_bias: 498 mul, 318 add, 12 div, 6 sqrt, 0 trig
 def _run_constraint_bias(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("constraint_bias")
@@ -4055,8 +4048,9 @@ def _run_constraint_bias(m, X, V):
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_q_3 = 1.0/upu_q_3
         upu_c_2 = inv_upu_q_3*upu_root_1
-        # (upu-S_dot) velocity of the connection point
+        # (upu-q_2) displacement of joint 2
         upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        # (upu-S_dot) velocity of the connection point
         axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
         axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
         axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
@@ -4093,6 +4087,10 @@ def _run_constraint_bias(m, X, V):
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
         )
+        upu_S_dot_in_axes2_z = (
+        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z
+        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
@@ -4119,25 +4117,31 @@ def _run_constraint_bias(m, X, V):
         upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
         upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
         upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
+        upu_n_m1_x = (
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_y = (
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y - axis_x_upu_axes2_y*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_z = (
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
+        )
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
         upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
         upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
+        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-eta_1) rate at which the joints turn along moment direction 1
-        upu_eta_1 = (
-        omega_x*(axis_y_upu_axes2_x*upu_n_m1_in_axes2_y -
-            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y) +
-            omega_y*(axis_y_upu_axes2_y*upu_n_m1_in_axes2_y -
-            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y) +
-            omega_z*(axis_y_upu_axes2_z*upu_n_m1_in_axes2_y -
-            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y)
-        )
+        upu_eta_1 = omega_x*upu_n_m1_x + omega_y*upu_n_m1_y + omega_z*upu_n_m1_z
         # (upu-qd_1) rate of joint 1
-        upu_qd_1 = (
-        (axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z - upu_eta_1*upu_n_c_in_axes2_z)/upu_w_1_t
+        upu_qd_1 = upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z - upu_eta_1*upu_n_c_in_axes2_z)
+        upu_omega_in_axes2_x = (
+        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
+        )
+        upu_omega_in_axes2_y = (
+        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
@@ -4148,49 +4152,46 @@ def _run_constraint_bias(m, X, V):
         upu_omega_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qd_1
         upu_omega_1_in_axes2_y = -upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
+        upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
         upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
+        # (upu-u_1) centripetal acceleration of the connection point
+        upu_u_1_x = omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4
+        upu_u_1_y = omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5
+        upu_u_1_z = omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3
         # (upu-bias) acceleration of the connection point at zero joint accelerations
-        upu_bias_in_axes2_z = (
-        2.0*upu_W_2_in_axes2_xz*upu_q_3 - 2.0*upu_S_dot_in_axes2_x*upu_omega_1_in_axes2_y
-        )
+        upu_bias_t = 2.0*upu_S_dot_in_axes2_x
+        upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
+        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t_2
         # (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         upu_rel_o_in_axes2_z = (
-        axis_z_upu_axes2_x*(omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4) +
-            axis_z_upu_axes2_y*(omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5) +
-            axis_z_upu_axes2_z*(omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3) -
-            upu_bias_in_axes2_z
+        axis_z_upu_axes2_x*upu_u_1_x + axis_z_upu_axes2_y*upu_u_1_y + axis_z_upu_axes2_z*upu_u_1_z
+            - upu_bias_in_axes2_z
         )
         # (upu-nd_m1) rate of moment direction 1
         upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
-        upu_omega_in_axes2_x = (
-        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
-        )
-        upu_omega_in_axes2_y = (
-        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
-        )
         upu_omega_in_axes2_z = (
         axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_in_axes2_x = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
-            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
+        upu_nd_m1_t = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z
         )
-        upu_nd_m1_in_axes2_y = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
-            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
+        upu_nd_m1_t_2 = (
+        upu_n_m1_in_axes2_y*upu_omega_in_axes2_z - upu_end_p1_in_axes2_z*upu_omega_in_axes2_x
         )
+        upu_nd_m1_in_axes2_x = -upu_nd_m1_t_2 - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
+        upu_nd_m1_in_axes2_y = upu_nd_m1_t - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
         upu_nu_1_t = (
-        upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y +
-            upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y*upu_qd_2
+        upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y + upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
         )
-        upu_nu_1_t_2 = (
+        upu_nu_1_t_2 = upu_omega_in_axes2_z - upu_qd_2
+        upu_nu_1_t_3 = (
         upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
             upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
-            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_nu_1_t_2*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
             upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
-        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2
+        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_3
         # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         upu_gamma_c1 = upu_nu_1 + upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z
         ok = (
@@ -4204,7 +4205,7 @@ def _run_constraint_bias(m, X, V):
     return ok, (out_constraint_bias,)
 
 
-# required: 957 mul, 714 add, 12 div, 6 sqrt, 0 trig
+# required: 945 mul, 708 add, 12 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -4279,9 +4280,22 @@ def _run_required(m, X, V, A):
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
     # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
     W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
     h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
@@ -4294,21 +4308,9 @@ def _run_required(m, X, V, A):
     a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
     a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
-    f_p_t = omega_x*omega_x
-    f_p_t_2 = omega_y*omega_y
-    f_p_t_3 = omega_z*omega_z
-    f_p_x = (
-    a_t_x*platform_mass + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) -
-        h_star_x*(f_p_t_2 + f_p_t_3)
-    )
-    f_p_y = (
-    a_t_y*platform_mass + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) -
-        h_star_y*(f_p_t + f_p_t_3)
-    )
-    f_p_z = (
-    a_t_z*platform_mass + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) -
-        h_star_z*(f_p_t + f_p_t_2)
-    )
+    f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*platform_mass - W_p_t_4*h_star_x
+    f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*platform_mass - W_p_t_5*h_star_y
+    f_p_z = B_p_zx*h_star_x + B_p_zy*h_star_y + a_t_z*platform_mass - W_p_t_6*h_star_z
     # (mu_p) inertia moment of the platform less that of its weight
     omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
     omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
@@ -4399,8 +4401,9 @@ def _run_required(m, X, V, A):
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_q_3 = 1.0/upu_q_3
         upu_c_2 = inv_upu_q_3*upu_root_1
-        # (upu-S_dot) velocity of the connection point
+        # (upu-q_2) displacement of joint 2
         upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        # (upu-S_dot) velocity of the connection point
         axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
         axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
         axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
@@ -4437,6 +4440,10 @@ def _run_required(m, X, V, A):
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
         )
+        upu_S_dot_in_axes2_z = (
+        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z
+        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
@@ -4463,6 +4470,15 @@ def _run_required(m, X, V, A):
         upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
         upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
         upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
+        upu_n_m1_x = (
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_y = (
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y - axis_x_upu_axes2_y*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_z = (
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
+        )
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
@@ -4480,9 +4496,8 @@ def _run_required(m, X, V, A):
         upu_omega_in_axes2_y = (
         axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
         )
-        upu_qd_1 = (
-        upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z +
+        upu_qd_1_2 = (
+        upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z +
             upu_n_c_in_axes2_z*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
             upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
         )
@@ -4492,129 +4507,130 @@ def _run_required(m, X, V, A):
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qd_1
-        upu_omega_1_in_axes2_y = -upu_c_2*upu_qd_1
+        upu_omega_1_in_axes2_x_2 = upu_e_1_in_axes2_x*upu_qd_1_2
+        upu_omega_1_in_axes2_y_2 = -upu_c_2*upu_qd_1_2
         # (upu-W_2) centripetal tensor of link 2
-        upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
-        upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
-        upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
-        # (upu-a_p) acceleration of the connection point without its centripetal part
-        upu_a_p_x = t_ddot_x + alpha_y*upu_q_z - alpha_z*upu_q_y
-        upu_a_p_y = t_ddot_y + alpha_z*upu_q_x - alpha_x*upu_q_z
-        upu_a_p_z = t_ddot_z + alpha_x*upu_q_y - alpha_y*upu_q_x
+        upu_W_2_t = upu_qd_2*upu_qd_2
+        upu_W_2_in_axes2_yz_2 = upu_omega_1_in_axes2_y_2*upu_qd_2
+        upu_W_2_in_axes2_xz_2 = upu_omega_1_in_axes2_x_2*upu_qd_2
+        upu_W_2_t_2 = upu_omega_1_in_axes2_y_2*upu_omega_1_in_axes2_y_2
+        upu_W_2_t_3 = upu_W_2_t + upu_W_2_t_2
+        upu_W_2_in_axes2_xy_2 = upu_omega_1_in_axes2_x_2*upu_omega_1_in_axes2_y_2
         # (upu-S_ddot) acceleration of the connection point
-        upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4
-        upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5
-        upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3
+        upu_S_ddot_x = t_ddot_x + B_p_xy*upu_q_y + B_p_xz*upu_q_z - W_p_t_4*upu_q_x
+        upu_S_ddot_y = t_ddot_y + B_p_yx*upu_q_x + B_p_yz*upu_q_z - W_p_t_5*upu_q_y
+        upu_S_ddot_z = t_ddot_z + B_p_zx*upu_q_x + B_p_zy*upu_q_y - W_p_t_6*upu_q_z
+        upu_S_ddot_in_axes2_x = (
+        axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
+            axis_x_upu_axes2_z*upu_S_ddot_z
+        )
         # (upu-bias) acceleration of the connection point at zero joint accelerations
         upu_bias_t = 2.0*upu_S_dot_in_axes2_x
-        upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
-        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t_2
+        upu_bias_t_3 = upu_bias_t*upu_omega_1_in_axes2_y_2
+        upu_bias_in_axes2_z_2 = 2.0*upu_W_2_in_axes2_xz_2*upu_q_3 - upu_bias_t_3
         # (upu-rel) acceleration of the connection point left to the joint accelerations
         upu_rel_in_axes2_z = (
         axis_z_upu_axes2_x*upu_S_ddot_x + axis_z_upu_axes2_y*upu_S_ddot_y +
-            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z
+            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z_2
         )
         # (upu-nd_m1) rate of moment direction 1
         upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
         upu_omega_in_axes2_z = (
         axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_in_axes2_x = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
-            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
+        upu_nd_m1_t = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z
         )
-        upu_nd_m1_in_axes2_y = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
-            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
+        upu_nd_m1_t_2 = (
+        upu_n_m1_in_axes2_y*upu_omega_in_axes2_z - upu_end_p1_in_axes2_z*upu_omega_in_axes2_x
         )
+        upu_nd_m1_in_axes2_x_2 = -upu_nd_m1_t_2 - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x_2
+        upu_nd_m1_in_axes2_y_2 = upu_nd_m1_t - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y_2
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
-        upu_nu_1_t = (
-        -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
+        upu_nu_1_t_2 = upu_omega_in_axes2_z - upu_qd_2
+        upu_nu_1_t_4 = (
+        -upu_W_2_in_axes2_xz_2*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz_2*upu_end_p1_in_axes2_y
         )
-        upu_nu_1_t_2 = (
-        upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
-            upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
-            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
+        upu_nu_1_t_5 = (
+        upu_nd_m1_in_axes2_y_2*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y_2) -
+            upu_nd_m1_in_axes2_x_2*(upu_omega_1_in_axes2_x_2 - upu_omega_in_axes2_x) -
+            upu_nu_1_t_2*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y_2 -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x_2)
         )
-        upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t
+        upu_nu_1_2 = upu_nu_1_t_5 - upu_nu_1_t_4
         # (upu-etad_1) acceleration with which the joints turn along moment direction 1
         upu_etad_1_t = (
         upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
             alpha_z*axis_x_upu_axes2_z) - upu_n_m1_in_axes2_y*(alpha_x*axis_y_upu_axes2_x +
             alpha_y*axis_y_upu_axes2_y + alpha_z*axis_y_upu_axes2_z)
         )
-        upu_etad_1 = upu_nu_1 - upu_etad_1_t
+        upu_etad_1 = upu_nu_1_2 - upu_etad_1_t
         # (upu-qdd_1) acceleration of joint 1
         upu_qdd_1_t = upu_w_1_in_axes2_z*(upu_etad_1*upu_n_c_in_axes2_z - upu_rel_in_axes2_z)
+        # (upu-qdd_2) acceleration of joint 2
+        upu_qdd_2_t = upu_bias_t*upu_qd_2
+        upu_qdd_2_t_2 = (
+        axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y +
+            axis_y_upu_axes2_z*upu_S_ddot_z - upu_qdd_2_t
+        )
+        upu_qdd_2_t_3 = inv_upu_q_3*upu_qdd_2_t_2
+        upu_qdd_2 = upu_qdd_2_t_3 - upu_W_2_in_axes2_xy_2
         # (upu-alpha_1) angular acceleration of link 1
         upu_alpha_1_t = upu_e_1_in_axes2_x*upu_qdd_1_t
         upu_alpha_1_in_axes2_y = upu_c_2*upu_qdd_1_t
         # (upu-alpha_2) angular acceleration of link 2
-        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_t
-        upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz
+        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz_2 - upu_alpha_1_t
+        upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz_2
         # (upu-B_2) acceleration tensor of link 2
-        upu_B_2_t = upu_bias_t*upu_qd_2
-        upu_B_2_t_2 = (
-        axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y +
-            axis_y_upu_axes2_z*upu_S_ddot_z - upu_B_2_t
-        )
-        upu_B_2_in_axes2_yx = inv_upu_q_3*upu_B_2_t_2
-        upu_B_2_in_axes2_xy = 2.0*upu_W_2_in_axes2_xy - upu_B_2_in_axes2_yx
-        upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y
-        upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x
+        upu_B_2_in_axes2_xy = upu_W_2_in_axes2_xy_2 - upu_qdd_2
+        upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz_2 - upu_alpha_2_in_axes2_y
+        upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz_2 + upu_alpha_2_in_axes2_x
         # (upu-acc_3) acceleration of the reference point of link 3, less gravity
         upu_acc_3_t_4 = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
         upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
         upu_g_in_axes2_x = upu_acc_3_t_3*upu_e_1_in_axes2_x + upu_acc_3_t_4*upu_c_2
         upu_g_in_axes2_y = upu_acc_3_t_4*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
-        upu_acc_3_in_axes2_x = (
-        axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
-            axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_in_axes2_x
-        )
-        upu_acc_3_in_axes2_y = upu_B_2_t + upu_B_2_t_2 - upu_g_in_axes2_y
-        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_q_3 - upu_bias_t_2 - upu_g_in_axes2_z
+        upu_acc_3_in_axes2_x = upu_S_ddot_in_axes2_x - upu_g_in_axes2_x
+        upu_acc_3_in_axes2_y = upu_qdd_2_t + upu_qdd_2_t_2 - upu_g_in_axes2_y
+        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_q_3 - upu_bias_t_3 - upu_g_in_axes2_z
         # (upu-f_3) inertia force of link 3 less its weight
-        upu_f_3_t = upu_qd_2*upu_qd_2
-        upu_f_3_t_2 = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
-        upu_f_3_t_3 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
+        upu_f_3_t = upu_omega_1_in_axes2_x_2*upu_omega_1_in_axes2_x_2
         upu_f_3_in_axes2_x = (
         upu_acc_3_in_axes2_x*upu_link3_mass + upu_alpha_1_in_axes2_y*upu_h_3_in_spec2_y -
-            upu_B_2_in_axes2_xy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_x*(upu_f_3_t + upu_f_3_t_3)
+            upu_B_2_in_axes2_xy*upu_h_3_in_spec2_z - upu_W_2_t_3*upu_h_3_in_spec2_x
         )
         upu_f_3_in_axes2_y = (
-        upu_B_2_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_y*upu_link3_mass +
-            upu_alpha_1_t*upu_h_3_in_spec2_y + upu_h_3_in_spec2_z*(upu_f_3_t + upu_f_3_t_2)
+        upu_acc_3_in_axes2_y*upu_link3_mass + upu_alpha_1_t*upu_h_3_in_spec2_y +
+            upu_h_3_in_spec2_x*upu_qdd_2_t_3 + upu_h_3_in_spec2_z*(upu_W_2_t + upu_f_3_t)
         )
         upu_f_3_in_axes2_z = (
         upu_B_2_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_z*upu_link3_mass -
-            upu_B_2_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_f_3_t_2 +
-            upu_f_3_t_3)
+            upu_B_2_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_W_2_t_2 + upu_f_3_t)
         )
         # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        upu_mu_2_t = upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z
+        upu_mu_2_t_2 = upu_g_in_axes2_x*upu_h_2_in_spec2_y - upu_g_in_axes2_z*upu_h_2_in_spec2_x
+        upu_mu_2_t_3 = upu_g_in_axes2_x*upu_h_2_in_spec2_z + upu_g_in_axes2_y*upu_h_2_in_spec2_x
         upu_mu_2_in_axes2_x = (
-        upu_B_2_in_axes2_yx*upu_J_group_2_in_axes2_xz +
-            upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy + upu_g_in_axes2_y*upu_h_2_in_spec2_y +
-            upu_g_in_axes2_z*upu_h_2_in_spec2_z - upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy -
-            upu_J_group_2_in_axes2_yz*(upu_f_3_t - upu_f_3_t_3) -
-            upu_Sigma_2_in_axes2_zz*upu_alpha_1_t - upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y -
-            upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z
+        upu_mu_2_t + upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
+            upu_J_group_2_in_axes2_xz*upu_qdd_2_t_3 -
+            upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy - upu_J_group_2_in_axes2_yz*(upu_W_2_t -
+            upu_W_2_t_2) - upu_Sigma_2_in_axes2_zz*upu_alpha_1_t -
+            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z
         )
         upu_mu_2_in_axes2_y = (
-        upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy + upu_J_group_2_in_axes2_xz*(upu_f_3_t -
-            upu_f_3_t_2) + upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_y +
-            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_x -
+        upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy + upu_J_group_2_in_axes2_xz*(upu_W_2_t -
+            upu_f_3_t) + upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_y +
+            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_y - upu_mu_2_t_2 -
             upu_B_2_in_axes2_xy*upu_J_group_2_in_axes2_yz -
             upu_B_2_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_x
-            - upu_g_in_axes2_x*upu_h_2_in_spec2_y
         )
         upu_mu_2_in_axes2_z = (
-        upu_B_2_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_t_2 -
-            upu_f_3_t_3) + upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
-            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x -
+        upu_J_group_2_in_axes2_xy*(upu_f_3_t - upu_W_2_t_2) +
+            upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
+            upu_Sigma_2_in_axes2_xx*upu_qdd_2_t_3 + upu_acc_3_in_axes2_x*upu_h_3_in_spec2_z +
+            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x - upu_mu_2_t_3 -
             upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_J_group_2_in_axes2_xz*upu_alpha_1_t
-            - upu_g_in_axes2_x*upu_h_2_in_spec2_z - upu_g_in_axes2_y*upu_h_2_in_spec2_x
         )
         # (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_q_3
@@ -4641,36 +4657,21 @@ def _run_required(m, X, V, A):
         )
         # (upu-c_m) moment of the leg on the platform without actuation
         upu_c_m_in_axes2_x = upu_G_m1*upu_end_p1_in_axes2_y
+        upu_c_m_x = axis_x_upu_axes2_x*upu_c_m_in_axes2_x - axis_y_upu_axes2_x*upu_G_m_in_axes2_y
+        upu_c_m_y = axis_x_upu_axes2_y*upu_c_m_in_axes2_x - axis_y_upu_axes2_y*upu_G_m_in_axes2_y
+        upu_c_m_z = axis_x_upu_axes2_z*upu_c_m_in_axes2_x - axis_y_upu_axes2_z*upu_G_m_in_axes2_y
         # (R_a) moment that actuators and external wrench must give
-        upu_R_a_t = (
-        axis_y_upu_axes2_x*upu_G_m_in_axes2_y + upu_c_y*upu_q_z -
-            axis_x_upu_axes2_x*upu_c_m_in_axes2_x - upu_c_z*upu_q_y
-        )
-        upu_R_a_t_2 = (
-        axis_y_upu_axes2_y*upu_G_m_in_axes2_y + upu_c_z*upu_q_x -
-            axis_x_upu_axes2_y*upu_c_m_in_axes2_x - upu_c_x*upu_q_z
-        )
-        upu_R_a_t_3 = (
-        axis_y_upu_axes2_z*upu_G_m_in_axes2_y + upu_c_x*upu_q_y -
-            axis_x_upu_axes2_z*upu_c_m_in_axes2_x - upu_c_y*upu_q_x
-        )
+        upu_R_a_t = upu_c_y*upu_q_z - upu_c_m_x - upu_c_z*upu_q_y
+        upu_R_a_t_2 = upu_c_z*upu_q_x - upu_c_m_y - upu_c_x*upu_q_z
+        upu_R_a_t_3 = upu_c_x*upu_q_y - upu_c_m_z - upu_c_y*upu_q_x
         # (upu-H_a_3) moment of the column's unit force about the platform origin
         upu_H_a_3_x = axis_x_upu_axes2_z*upu_q_y - axis_x_upu_axes2_y*upu_q_z
         upu_H_a_3_y = axis_x_upu_axes2_x*upu_q_z - axis_x_upu_axes2_z*upu_q_x
         upu_H_a_3_z = axis_x_upu_axes2_y*upu_q_x - axis_x_upu_axes2_x*upu_q_y
         # (upu-Hk_a_1) moment of the column's unit force about the platform origin
-        upu_Hk_a_1_x = (
-        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_z*upu_q_y -
-            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y - upu_n_c_y*upu_q_z
-        )
-        upu_Hk_a_1_y = (
-        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_x*upu_q_z -
-            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y - upu_n_c_z*upu_q_x
-        )
-        upu_Hk_a_1_z = (
-        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_y*upu_q_x -
-            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y - upu_n_c_x*upu_q_y
-        )
+        upu_Hk_a_1_x = upu_n_m1_x + upu_n_c_z*upu_q_y - upu_n_c_y*upu_q_z
+        upu_Hk_a_1_y = upu_n_m1_y + upu_n_c_x*upu_q_z - upu_n_c_z*upu_q_x
+        upu_Hk_a_1_z = upu_n_m1_z + upu_n_c_y*upu_q_x - upu_n_c_x*upu_q_y
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
@@ -4770,18 +4771,18 @@ def _run_inverse_kinematics(m, X):
             upu_branch_2, upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_S_x = (
-        t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z -
-            upu_base_point_x
+        upu_q_x = (
+        R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_S_y = (
-        t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z -
-            upu_base_point_y
+        upu_q_y = (
+        R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_S_z = (
-        t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z -
-            upu_base_point_z
+        upu_q_z = (
+        R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
@@ -4794,15 +4795,22 @@ def _run_inverse_kinematics(m, X):
         # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
         upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
         upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
-        # (upu-q_1) displacement of joint 1
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
         inv_upu_root_1 = 1.0/upu_root_1
-        upu_q_1 = atan2(inv_upu_root_1*upu_S_in_turn1_y, inv_upu_root_1*upu_S_in_turn1_x)
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-q_1) displacement of joint 1
+        upu_q_1 = atan2(upu_s_1, upu_c_1)
         # (upu-q_3) displacement of joint 3
         upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
         upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
-        # (upu-q_2) displacement of joint 2
+        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_q_3 = 1.0/upu_q_3
-        upu_q_2 = atan2(-inv_upu_q_3*upu_S_in_turn1_z, inv_upu_q_3*upu_root_1)
+        upu_c_2 = inv_upu_q_3*upu_root_1
+        # (upu-q_2) displacement of joint 2
+        upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        upu_q_2 = atan2(-upu_e_1_in_axes2_x, upu_c_2)
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
@@ -4816,7 +4824,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 366 mul, 237 add, 12 div, 6 sqrt, 0 trig
+# joint_rates: 369 mul, 237 add, 12 div, 6 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -4915,8 +4923,9 @@ def _run_joint_rates(m, X, V):
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_q_3 = 1.0/upu_q_3
         upu_c_2 = inv_upu_q_3*upu_root_1
-        # (upu-S_dot) velocity of the connection point
+        # (upu-q_2) displacement of joint 2
         upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        # (upu-S_dot) velocity of the connection point
         axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
         axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
         axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
@@ -4943,12 +4952,19 @@ def _run_joint_rates(m, X, V):
         axis_x_upu_axes2_z = (
         axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
         )
-        upu_S_dot_x = t_dot_x + omega_y*upu_q_z - omega_z*upu_q_y
-        upu_S_dot_y = t_dot_y + omega_z*upu_q_x - omega_x*upu_q_z
-        upu_S_dot_z = t_dot_z + omega_x*upu_q_y - omega_y*upu_q_x
+        upu_S_dot_t_3 = omega_y*upu_q_z - omega_z*upu_q_y
+        upu_S_dot_t_4 = omega_z*upu_q_x - omega_x*upu_q_z
+        upu_S_dot_t_5 = omega_x*upu_q_y - omega_y*upu_q_x
+        upu_S_dot_x = t_dot_x + upu_S_dot_t_3
+        upu_S_dot_y = t_dot_y + upu_S_dot_t_4
+        upu_S_dot_z = t_dot_z + upu_S_dot_t_5
         upu_S_dot_in_axes2_x = (
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
+        )
+        upu_S_dot_in_axes2_z = (
+        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z
         )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
@@ -4982,16 +4998,19 @@ def _run_joint_rates(m, X, V):
         upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
         upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
+        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-qd_1) rate of joint 1
-        upu_qd_1_t = (
-        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z +
-            upu_n_c_in_axes2_z*(upu_end_p1_in_axes2_y*(axis_x_upu_axes2_x*omega_x +
-            axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z) -
-            upu_n_m1_in_axes2_y*(axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y +
-            axis_y_upu_axes2_z*omega_z))
+        upu_omega_in_axes2_x = (
+        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
-        upu_qd_1 = upu_qd_1_t/upu_w_1_t
+        upu_omega_in_axes2_y = (
+        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
+        )
+        upu_qd_1_2 = (
+        upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z +
+            upu_n_c_in_axes2_z*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
+            upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
+        )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
         inv_upu_q_3*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
@@ -5004,7 +5023,7 @@ def _run_joint_rates(m, X, V):
             * 0.8)
         )
         # (upu-qd_1) rate of joint 1
-        out_qd[_qd_upu[0][leg]] = upu_qd_1
+        out_qd[_qd_upu[0][leg]] = upu_qd_1_2
         # (upu-qd_2) rate of joint 2
         out_qd[_qd_upu[1][leg]] = upu_qd_2
         # (upu-qd_3) rate of joint 3
@@ -5012,7 +5031,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 558 mul, 375 add, 12 div, 6 sqrt, 0 trig
+# joint_accelerations: 555 mul, 375 add, 12 div, 6 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -5079,6 +5098,23 @@ def _run_joint_accelerations(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
@@ -5124,8 +5160,9 @@ def _run_joint_accelerations(m, X, V, A):
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_q_3 = 1.0/upu_q_3
         upu_c_2 = inv_upu_q_3*upu_root_1
-        # (upu-S_dot) velocity of the connection point
+        # (upu-q_2) displacement of joint 2
         upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        # (upu-S_dot) velocity of the connection point
         axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
         axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
         axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
@@ -5161,6 +5198,10 @@ def _run_joint_accelerations(m, X, V, A):
         upu_S_dot_in_axes2_x = (
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
+        )
+        upu_S_dot_in_axes2_z = (
+        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z
         )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
@@ -5202,9 +5243,8 @@ def _run_joint_accelerations(m, X, V, A):
         upu_omega_in_axes2_y = (
         axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
         )
-        upu_qd_1 = (
-        upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z +
+        upu_qd_1_2 = (
+        upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z +
             upu_n_c_in_axes2_z*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
             upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
         )
@@ -5214,71 +5254,75 @@ def _run_joint_accelerations(m, X, V, A):
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qd_1
-        upu_omega_1_in_axes2_y = -upu_c_2*upu_qd_1
+        upu_omega_1_in_axes2_x_2 = upu_e_1_in_axes2_x*upu_qd_1_2
+        upu_omega_1_in_axes2_y_2 = -upu_c_2*upu_qd_1_2
         # (upu-W_2) centripetal tensor of link 2
-        upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
-        # (upu-a_p) acceleration of the connection point without its centripetal part
-        upu_a_p_x = t_ddot_x + alpha_y*upu_q_z - alpha_z*upu_q_y
-        upu_a_p_y = t_ddot_y + alpha_z*upu_q_x - alpha_x*upu_q_z
-        upu_a_p_z = t_ddot_z + alpha_x*upu_q_y - alpha_y*upu_q_x
+        upu_W_2_t = upu_qd_2*upu_qd_2
+        upu_W_2_in_axes2_yz_2 = upu_omega_1_in_axes2_y_2*upu_qd_2
+        upu_W_2_in_axes2_xz_2 = upu_omega_1_in_axes2_x_2*upu_qd_2
+        upu_W_2_t_2 = upu_omega_1_in_axes2_y_2*upu_omega_1_in_axes2_y_2
+        upu_W_2_t_3 = upu_W_2_t + upu_W_2_t_2
+        upu_W_2_in_axes2_xy_2 = upu_omega_1_in_axes2_x_2*upu_omega_1_in_axes2_y_2
         # (upu-S_ddot) acceleration of the connection point
-        upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4
-        upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5
-        upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3
+        upu_S_ddot_x = t_ddot_x + B_p_xy*upu_q_y + B_p_xz*upu_q_z - W_p_t_4*upu_q_x
+        upu_S_ddot_y = t_ddot_y + B_p_yx*upu_q_x + B_p_yz*upu_q_z - W_p_t_5*upu_q_y
+        upu_S_ddot_z = t_ddot_z + B_p_zx*upu_q_x + B_p_zy*upu_q_y - W_p_t_6*upu_q_z
+        upu_S_ddot_in_axes2_x = (
+        axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
+            axis_x_upu_axes2_z*upu_S_ddot_z
+        )
         # (upu-bias) acceleration of the connection point at zero joint accelerations
         upu_bias_t = 2.0*upu_S_dot_in_axes2_x
-        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t*upu_omega_1_in_axes2_y
+        upu_bias_t_3 = upu_bias_t*upu_omega_1_in_axes2_y_2
+        upu_bias_in_axes2_z_2 = 2.0*upu_W_2_in_axes2_xz_2*upu_q_3 - upu_bias_t_3
         # (upu-rel) acceleration of the connection point left to the joint accelerations
-        upu_rel_in_axes2_x = (
-        axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
-            axis_x_upu_axes2_z*upu_S_ddot_z +
-            upu_q_3*(upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y + upu_qd_2*upu_qd_2)
-        )
+        upu_rel_in_axes2_x = upu_S_ddot_in_axes2_x + upu_W_2_t_3*upu_q_3
         upu_rel_in_axes2_z = (
         axis_z_upu_axes2_x*upu_S_ddot_x + axis_z_upu_axes2_y*upu_S_ddot_y +
-            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z
+            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z_2
         )
         # (upu-nd_m1) rate of moment direction 1
         upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
         upu_omega_in_axes2_z = (
         axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_in_axes2_x = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
-            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
+        upu_nd_m1_t = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z
         )
-        upu_nd_m1_in_axes2_y = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
-            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
+        upu_nd_m1_t_2 = (
+        upu_n_m1_in_axes2_y*upu_omega_in_axes2_z - upu_end_p1_in_axes2_z*upu_omega_in_axes2_x
         )
+        upu_nd_m1_in_axes2_x_2 = -upu_nd_m1_t_2 - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x_2
+        upu_nd_m1_in_axes2_y_2 = upu_nd_m1_t - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y_2
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
-        upu_nu_1_t = (
-        -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y -
-            upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y*upu_qd_2
+        upu_nu_1_t_2 = upu_omega_in_axes2_z - upu_qd_2
+        upu_nu_1_t_4 = (
+        -upu_W_2_in_axes2_xz_2*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz_2*upu_end_p1_in_axes2_y
         )
-        upu_nu_1_t_2 = (
-        upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
-            upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
-            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
+        upu_nu_1_t_5 = (
+        upu_nd_m1_in_axes2_y_2*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y_2) -
+            upu_nd_m1_in_axes2_x_2*(upu_omega_1_in_axes2_x_2 - upu_omega_in_axes2_x) -
+            upu_nu_1_t_2*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y_2 -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x_2)
         )
-        upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t
+        upu_nu_1_2 = upu_nu_1_t_5 - upu_nu_1_t_4
         # (upu-etad_1) acceleration with which the joints turn along moment direction 1
         upu_etad_1_t = (
         upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
             alpha_z*axis_x_upu_axes2_z) - upu_n_m1_in_axes2_y*(alpha_x*axis_y_upu_axes2_x +
             alpha_y*axis_y_upu_axes2_y + alpha_z*axis_y_upu_axes2_z)
         )
-        upu_etad_1 = upu_nu_1 - upu_etad_1_t
+        upu_etad_1 = upu_nu_1_2 - upu_etad_1_t
         # (upu-qdd_1) acceleration of joint 1
         upu_qdd_1_t = upu_w_1_in_axes2_z*(upu_etad_1*upu_n_c_in_axes2_z - upu_rel_in_axes2_z)
         # (upu-qdd_2) acceleration of joint 2
-        upu_qdd_2 = (
-        inv_upu_q_3*(axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y +
-            axis_y_upu_axes2_z*upu_S_ddot_z - upu_bias_t*upu_qd_2) -
-            upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
+        upu_qdd_2_t = upu_bias_t*upu_qd_2
+        upu_qdd_2_t_2 = (
+        axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y +
+            axis_y_upu_axes2_z*upu_S_ddot_z - upu_qdd_2_t
         )
+        upu_qdd_2_t_3 = inv_upu_q_3*upu_qdd_2_t_2
+        upu_qdd_2 = upu_qdd_2_t_3 - upu_W_2_in_axes2_xy_2
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
@@ -5344,18 +5388,18 @@ def _run_constraints(m, X):
             upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_S_x = (
-        t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z -
-            upu_base_point_x
+        upu_q_x = (
+        R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_S_y = (
-        t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z -
-            upu_base_point_y
+        upu_q_y = (
+        R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_S_z = (
-        t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z -
-            upu_base_point_z
+        upu_q_z = (
+        R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
@@ -5365,33 +5409,35 @@ def _run_constraints(m, X):
         # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
         upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
         upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
-        # (upu-phi_c1) loop-closure residual about the constraint moment
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
         inv_upu_root_1 = 1.0/upu_root_1
-        upu_phi_c1_t = (
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        upu_phi_c1_t_2 = (
+        upu_n_m1_t_2 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        upu_end_p1_in_axes2_z = (
-        inv_upu_root_1*upu_S_in_turn1_x*upu_phi_c1_t_2 -
-            inv_upu_root_1*upu_S_in_turn1_y*upu_phi_c1_t
-        )
+        # (upu-nd_m1) rate of moment direction 1
+        upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
         ok = ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         # (upu-phi_c1) loop-closure residual about the constraint moment
         out_constraints[_constraints_upu[0][leg]] = -upu_end_p1_in_axes2_z
     return ok, (out_constraints,)
 
 
-# legs: 810 mul, 570 add, 12 div, 6 sqrt, 0 trig
+# legs: 804 mul, 573 add, 12 div, 6 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -5460,6 +5506,23 @@ def _run_legs(m, X, V, A):
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
     out_constraint_direction = m.zeros("constraint_direction")
+    # (W_p) centripetal tensor of the platform
+    W_p_t = omega_x*omega_x
+    W_p_t_2 = omega_y*omega_y
+    W_p_t_3 = omega_z*omega_z
+    W_p_t_4 = W_p_t_2 + W_p_t_3
+    W_p_xy = omega_x*omega_y
+    W_p_xz = omega_x*omega_z
+    W_p_t_5 = W_p_t + W_p_t_3
+    W_p_yz = omega_y*omega_z
+    W_p_t_6 = W_p_t + W_p_t_2
+    # (B_p) acceleration tensor of the platform
+    B_p_xy = W_p_xy - alpha_z
+    B_p_xz = W_p_xz + alpha_y
+    B_p_yx = W_p_xy + alpha_z
+    B_p_yz = W_p_yz - alpha_x
+    B_p_zx = W_p_xz - alpha_y
+    B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
         upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz, upu_J_group_2_in_axes2_yz,
@@ -5509,8 +5572,9 @@ def _run_legs(m, X, V, A):
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_q_3 = 1.0/upu_q_3
         upu_c_2 = inv_upu_q_3*upu_root_1
-        # (upu-S_dot) velocity of the connection point
+        # (upu-q_2) displacement of joint 2
         upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        # (upu-S_dot) velocity of the connection point
         axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
         axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
         axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
@@ -5546,6 +5610,10 @@ def _run_legs(m, X, V, A):
         upu_S_dot_in_axes2_x = (
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
+        )
+        upu_S_dot_in_axes2_z = (
+        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z
         )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
@@ -5599,9 +5667,8 @@ def _run_legs(m, X, V, A):
         upu_omega_in_axes2_y = (
         axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
         )
-        upu_qd_1 = (
-        upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z +
+        upu_qd_1_2 = (
+        upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z +
             upu_n_c_in_axes2_z*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
             upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
         )
@@ -5611,129 +5678,130 @@ def _run_legs(m, X, V, A):
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qd_1
-        upu_omega_1_in_axes2_y = -upu_c_2*upu_qd_1
+        upu_omega_1_in_axes2_x_2 = upu_e_1_in_axes2_x*upu_qd_1_2
+        upu_omega_1_in_axes2_y_2 = -upu_c_2*upu_qd_1_2
         # (upu-W_2) centripetal tensor of link 2
-        upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
-        upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
-        upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
-        # (upu-a_p) acceleration of the connection point without its centripetal part
-        upu_a_p_x = t_ddot_x + alpha_y*upu_q_z - alpha_z*upu_q_y
-        upu_a_p_y = t_ddot_y + alpha_z*upu_q_x - alpha_x*upu_q_z
-        upu_a_p_z = t_ddot_z + alpha_x*upu_q_y - alpha_y*upu_q_x
+        upu_W_2_t = upu_qd_2*upu_qd_2
+        upu_W_2_in_axes2_yz_2 = upu_omega_1_in_axes2_y_2*upu_qd_2
+        upu_W_2_in_axes2_xz_2 = upu_omega_1_in_axes2_x_2*upu_qd_2
+        upu_W_2_t_2 = upu_omega_1_in_axes2_y_2*upu_omega_1_in_axes2_y_2
+        upu_W_2_t_3 = upu_W_2_t + upu_W_2_t_2
+        upu_W_2_in_axes2_xy_2 = upu_omega_1_in_axes2_x_2*upu_omega_1_in_axes2_y_2
         # (upu-S_ddot) acceleration of the connection point
-        upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4
-        upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5
-        upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3
+        upu_S_ddot_x = t_ddot_x + B_p_xy*upu_q_y + B_p_xz*upu_q_z - W_p_t_4*upu_q_x
+        upu_S_ddot_y = t_ddot_y + B_p_yx*upu_q_x + B_p_yz*upu_q_z - W_p_t_5*upu_q_y
+        upu_S_ddot_z = t_ddot_z + B_p_zx*upu_q_x + B_p_zy*upu_q_y - W_p_t_6*upu_q_z
+        upu_S_ddot_in_axes2_x = (
+        axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
+            axis_x_upu_axes2_z*upu_S_ddot_z
+        )
         # (upu-bias) acceleration of the connection point at zero joint accelerations
         upu_bias_t = 2.0*upu_S_dot_in_axes2_x
-        upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
-        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t_2
+        upu_bias_t_3 = upu_bias_t*upu_omega_1_in_axes2_y_2
+        upu_bias_in_axes2_z_2 = 2.0*upu_W_2_in_axes2_xz_2*upu_q_3 - upu_bias_t_3
         # (upu-rel) acceleration of the connection point left to the joint accelerations
         upu_rel_in_axes2_z = (
         axis_z_upu_axes2_x*upu_S_ddot_x + axis_z_upu_axes2_y*upu_S_ddot_y +
-            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z
+            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z_2
         )
         # (upu-nd_m1) rate of moment direction 1
         upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
         upu_omega_in_axes2_z = (
         axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_in_axes2_x = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
-            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
+        upu_nd_m1_t = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z
         )
-        upu_nd_m1_in_axes2_y = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
-            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
+        upu_nd_m1_t_2 = (
+        upu_n_m1_in_axes2_y*upu_omega_in_axes2_z - upu_end_p1_in_axes2_z*upu_omega_in_axes2_x
         )
+        upu_nd_m1_in_axes2_x_2 = -upu_nd_m1_t_2 - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x_2
+        upu_nd_m1_in_axes2_y_2 = upu_nd_m1_t - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y_2
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
-        upu_nu_1_t = (
-        -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
+        upu_nu_1_t_2 = upu_omega_in_axes2_z - upu_qd_2
+        upu_nu_1_t_4 = (
+        -upu_W_2_in_axes2_xz_2*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz_2*upu_end_p1_in_axes2_y
         )
-        upu_nu_1_t_2 = (
-        upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
-            upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
-            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
+        upu_nu_1_t_5 = (
+        upu_nd_m1_in_axes2_y_2*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y_2) -
+            upu_nd_m1_in_axes2_x_2*(upu_omega_1_in_axes2_x_2 - upu_omega_in_axes2_x) -
+            upu_nu_1_t_2*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y_2 -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x_2)
         )
-        upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t
+        upu_nu_1_2 = upu_nu_1_t_5 - upu_nu_1_t_4
         # (upu-etad_1) acceleration with which the joints turn along moment direction 1
         upu_etad_1_t = (
         upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
             alpha_z*axis_x_upu_axes2_z) - upu_n_m1_in_axes2_y*(alpha_x*axis_y_upu_axes2_x +
             alpha_y*axis_y_upu_axes2_y + alpha_z*axis_y_upu_axes2_z)
         )
-        upu_etad_1 = upu_nu_1 - upu_etad_1_t
+        upu_etad_1 = upu_nu_1_2 - upu_etad_1_t
         # (upu-qdd_1) acceleration of joint 1
         upu_qdd_1_t = upu_w_1_in_axes2_z*(upu_etad_1*upu_n_c_in_axes2_z - upu_rel_in_axes2_z)
+        # (upu-qdd_2) acceleration of joint 2
+        upu_qdd_2_t = upu_bias_t*upu_qd_2
+        upu_qdd_2_t_2 = (
+        axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y +
+            axis_y_upu_axes2_z*upu_S_ddot_z - upu_qdd_2_t
+        )
+        upu_qdd_2_t_3 = inv_upu_q_3*upu_qdd_2_t_2
+        upu_qdd_2 = upu_qdd_2_t_3 - upu_W_2_in_axes2_xy_2
         # (upu-alpha_1) angular acceleration of link 1
         upu_alpha_1_t = upu_e_1_in_axes2_x*upu_qdd_1_t
         upu_alpha_1_in_axes2_y = upu_c_2*upu_qdd_1_t
         # (upu-alpha_2) angular acceleration of link 2
-        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_t
-        upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz
+        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz_2 - upu_alpha_1_t
+        upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz_2
         # (upu-B_2) acceleration tensor of link 2
-        upu_B_2_t = upu_bias_t*upu_qd_2
-        upu_B_2_t_2 = (
-        axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y +
-            axis_y_upu_axes2_z*upu_S_ddot_z - upu_B_2_t
-        )
-        upu_B_2_in_axes2_yx = inv_upu_q_3*upu_B_2_t_2
-        upu_B_2_in_axes2_xy = 2.0*upu_W_2_in_axes2_xy - upu_B_2_in_axes2_yx
-        upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y
-        upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x
+        upu_B_2_in_axes2_xy = upu_W_2_in_axes2_xy_2 - upu_qdd_2
+        upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz_2 - upu_alpha_2_in_axes2_y
+        upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz_2 + upu_alpha_2_in_axes2_x
         # (upu-acc_3) acceleration of the reference point of link 3, less gravity
         upu_acc_3_t_4 = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
         upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
         upu_g_in_axes2_x = upu_acc_3_t_3*upu_e_1_in_axes2_x + upu_acc_3_t_4*upu_c_2
         upu_g_in_axes2_y = upu_acc_3_t_4*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
-        upu_acc_3_in_axes2_x = (
-        axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
-            axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_in_axes2_x
-        )
-        upu_acc_3_in_axes2_y = upu_B_2_t + upu_B_2_t_2 - upu_g_in_axes2_y
-        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_q_3 - upu_bias_t_2 - upu_g_in_axes2_z
+        upu_acc_3_in_axes2_x = upu_S_ddot_in_axes2_x - upu_g_in_axes2_x
+        upu_acc_3_in_axes2_y = upu_qdd_2_t + upu_qdd_2_t_2 - upu_g_in_axes2_y
+        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_q_3 - upu_bias_t_3 - upu_g_in_axes2_z
         # (upu-f_3) inertia force of link 3 less its weight
-        upu_f_3_t = upu_qd_2*upu_qd_2
-        upu_f_3_t_2 = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
-        upu_f_3_t_3 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
+        upu_f_3_t = upu_omega_1_in_axes2_x_2*upu_omega_1_in_axes2_x_2
         upu_f_3_in_axes2_x = (
         upu_acc_3_in_axes2_x*upu_link3_mass + upu_alpha_1_in_axes2_y*upu_h_3_in_spec2_y -
-            upu_B_2_in_axes2_xy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_x*(upu_f_3_t + upu_f_3_t_3)
+            upu_B_2_in_axes2_xy*upu_h_3_in_spec2_z - upu_W_2_t_3*upu_h_3_in_spec2_x
         )
         upu_f_3_in_axes2_y = (
-        upu_B_2_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_y*upu_link3_mass +
-            upu_alpha_1_t*upu_h_3_in_spec2_y + upu_h_3_in_spec2_z*(upu_f_3_t + upu_f_3_t_2)
+        upu_acc_3_in_axes2_y*upu_link3_mass + upu_alpha_1_t*upu_h_3_in_spec2_y +
+            upu_h_3_in_spec2_x*upu_qdd_2_t_3 + upu_h_3_in_spec2_z*(upu_W_2_t + upu_f_3_t)
         )
         upu_f_3_in_axes2_z = (
         upu_B_2_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_z*upu_link3_mass -
-            upu_B_2_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_f_3_t_2 +
-            upu_f_3_t_3)
+            upu_B_2_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_W_2_t_2 + upu_f_3_t)
         )
         # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        upu_mu_2_t = upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z
+        upu_mu_2_t_2 = upu_g_in_axes2_x*upu_h_2_in_spec2_y - upu_g_in_axes2_z*upu_h_2_in_spec2_x
+        upu_mu_2_t_3 = upu_g_in_axes2_x*upu_h_2_in_spec2_z + upu_g_in_axes2_y*upu_h_2_in_spec2_x
         upu_mu_2_in_axes2_x = (
-        upu_B_2_in_axes2_yx*upu_J_group_2_in_axes2_xz +
-            upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy + upu_g_in_axes2_y*upu_h_2_in_spec2_y +
-            upu_g_in_axes2_z*upu_h_2_in_spec2_z - upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy -
-            upu_J_group_2_in_axes2_yz*(upu_f_3_t - upu_f_3_t_3) -
-            upu_Sigma_2_in_axes2_zz*upu_alpha_1_t - upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y -
-            upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z
+        upu_mu_2_t + upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
+            upu_J_group_2_in_axes2_xz*upu_qdd_2_t_3 -
+            upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy - upu_J_group_2_in_axes2_yz*(upu_W_2_t -
+            upu_W_2_t_2) - upu_Sigma_2_in_axes2_zz*upu_alpha_1_t -
+            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z
         )
         upu_mu_2_in_axes2_y = (
-        upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy + upu_J_group_2_in_axes2_xz*(upu_f_3_t -
-            upu_f_3_t_2) + upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_y +
-            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_x -
+        upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy + upu_J_group_2_in_axes2_xz*(upu_W_2_t -
+            upu_f_3_t) + upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_y +
+            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_y - upu_mu_2_t_2 -
             upu_B_2_in_axes2_xy*upu_J_group_2_in_axes2_yz -
             upu_B_2_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_x
-            - upu_g_in_axes2_x*upu_h_2_in_spec2_y
         )
         upu_mu_2_in_axes2_z = (
-        upu_B_2_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_t_2 -
-            upu_f_3_t_3) + upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
-            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x -
+        upu_J_group_2_in_axes2_xy*(upu_f_3_t - upu_W_2_t_2) +
+            upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
+            upu_Sigma_2_in_axes2_xx*upu_qdd_2_t_3 + upu_acc_3_in_axes2_x*upu_h_3_in_spec2_z +
+            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x - upu_mu_2_t_3 -
             upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_J_group_2_in_axes2_xz*upu_alpha_1_t
-            - upu_g_in_axes2_x*upu_h_2_in_spec2_z - upu_g_in_axes2_y*upu_h_2_in_spec2_x
         )
         # (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_q_3
@@ -5837,12 +5905,14 @@ def _run_potential(m, X):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_potential = m.zeros("potential")
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
-        platform_mass*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z + platform_mass*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
-        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + platform_mass*t_z)
+    gravity_x*(h_star_x + platform_mass*t_x) + gravity_y*(h_star_y + platform_mass*t_y) +
+        gravity_z*(h_star_z + platform_mass*t_z)
     )
     potential_upu, = [0.0] * 1
     for leg, k in legs[0]:
@@ -5857,18 +5927,18 @@ def _run_potential(m, X):
             upu_potential_t_3,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_S_x = (
-        t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z -
-            upu_base_point_x
+        upu_q_x = (
+        R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_S_y = (
-        t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z -
-            upu_base_point_y
+        upu_q_y = (
+        R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_S_z = (
-        t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z -
-            upu_base_point_z
+        upu_q_z = (
+        R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
@@ -5892,29 +5962,32 @@ def _run_potential(m, X):
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_q_3 = 1.0/upu_q_3
         upu_c_2 = inv_upu_q_3*upu_root_1
-        # (potential) potential energy
+        # (upu-q_2) displacement of joint 2
         upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
-        upu_potential_t_4 = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
-        upu_potential_t_5 = upu_c_1*upu_potential_t + upu_potential_t_2*upu_s_1
+        # (upu-acc_3) acceleration of the reference point of link 3, less gravity
+        upu_acc_3_t_4 = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
+        upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
+        upu_g_in_axes2_x = upu_acc_3_t_3*upu_e_1_in_axes2_x + upu_acc_3_t_4*upu_c_2
+        upu_g_in_axes2_y = upu_acc_3_t_4*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
+        # (potential) potential energy
+        upu_potential_t_4 = upu_c_1*upu_potential_t + upu_potential_t_2*upu_s_1
         upu_b_in_spec2_y = upu_c_1*upu_potential_t_2 - upu_potential_t*upu_s_1
-        upu_b_in_spec2_x = upu_c_2*upu_potential_t_5 + upu_e_1_in_axes2_x*upu_potential_t_3
-        upu_b_in_spec2_z = upu_c_2*upu_potential_t_3 - upu_e_1_in_axes2_x*upu_potential_t_5
-        upu_potential_t_6 = (
-        (upu_e_1_in_axes2_x*upu_potential_t_4 - upu_acc_3_t_3*upu_c_2)*(upu_h_2_in_spec2_z +
-            upu_h_3_in_spec2_z + upu_b_in_spec2_z*upu_link2_mass +
-            upu_b_in_spec2_z*upu_link3_mass) - (upu_acc_3_t_2*upu_c_1 -
-            upu_acc_3_t*upu_s_1)*(upu_h_2_in_spec2_y + upu_h_3_in_spec2_y +
-            upu_b_in_spec2_y*upu_link2_mass + upu_b_in_spec2_y*upu_link3_mass) -
-            (upu_acc_3_t_3*upu_e_1_in_axes2_x + upu_c_2*upu_potential_t_4)*(upu_h_2_in_spec2_x +
-            upu_h_3_in_spec2_x + upu_b_in_spec2_x*upu_link2_mass +
-            upu_link3_mass*(upu_b_in_spec2_x + upu_q_3))
+        upu_b_in_spec2_x = upu_c_2*upu_potential_t_4 + upu_e_1_in_axes2_x*upu_potential_t_3
+        upu_b_in_spec2_z = upu_c_2*upu_potential_t_3 - upu_e_1_in_axes2_x*upu_potential_t_4
+        upu_potential_t_5 = (
+        upu_g_in_axes2_y*(upu_h_2_in_spec2_z + upu_h_3_in_spec2_z +
+            upu_b_in_spec2_z*upu_link2_mass + upu_b_in_spec2_z*upu_link3_mass) -
+            upu_g_in_axes2_x*(upu_h_2_in_spec2_x + upu_h_3_in_spec2_x +
+            upu_b_in_spec2_x*upu_link2_mass + upu_link3_mass*(upu_b_in_spec2_x + upu_q_3)) -
+            upu_g_in_axes2_z*(upu_h_2_in_spec2_y + upu_h_3_in_spec2_y +
+            upu_b_in_spec2_y*upu_link2_mass + upu_b_in_spec2_y*upu_link3_mass)
         )
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (potential) potential energy
-        potential_upu += upu_potential_t_6
+        potential_upu += upu_potential_t_5
     # (potential) potential energy
     potential = potential_upu - potential_t
     # (potential) potential energy
@@ -6019,8 +6092,36 @@ def _run_condition(m, X):
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_q_3 = 1.0/upu_q_3
         upu_c_2 = inv_upu_q_3*upu_root_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        # (upu-q_2) displacement of joint 2
         upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        # (upu-S_dot) velocity of the connection point
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1
+        axis_y_upu_axes2_x = (
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy -
+            upu_base_frame_xz*upu_c_2
+        )
+        axis_y_upu_axes2_y = (
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy -
+            upu_base_frame_yz*upu_c_2
+        )
+        axis_y_upu_axes2_z = (
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy -
+            upu_base_frame_zz*upu_c_2
+        )
+        axis_x_upu_axes2_x = (
+        axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
+        )
+        axis_x_upu_axes2_y = (
+        axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
+        )
+        axis_x_upu_axes2_z = (
+        axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
+        )
+        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
@@ -6046,33 +6147,24 @@ def _run_condition(m, X):
         upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
         upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
         upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
+        upu_n_m1_x = (
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_y = (
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y - axis_x_upu_axes2_y*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_z = (
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
+        )
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
         upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
         upu_n_c_x = axis_z_upu_axes2_x*upu_n_c_in_axes2_z
         upu_n_c_y = axis_z_upu_axes2_y*upu_n_c_in_axes2_z
         upu_n_c_z = axis_z_upu_axes2_z*upu_n_c_in_axes2_z
         # (upu-w_1) force part of reciprocal wrench 1
         upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
-        # (upu-w_3) force part of reciprocal wrench 3
-        upu_w_3_t = upu_c_1*upu_e_1_in_axes2_x
-        upu_w_3_t_2 = upu_e_1_in_axes2_x*upu_s_1
-        axis_y_upu_axes2_x = (
-        upu_base_frame_xx*upu_w_3_t + upu_base_frame_xy*upu_w_3_t_2 - upu_base_frame_xz*upu_c_2
-        )
-        axis_y_upu_axes2_y = (
-        upu_base_frame_yx*upu_w_3_t + upu_base_frame_yy*upu_w_3_t_2 - upu_base_frame_yz*upu_c_2
-        )
-        axis_y_upu_axes2_z = (
-        upu_base_frame_zx*upu_w_3_t + upu_base_frame_zy*upu_w_3_t_2 - upu_base_frame_zz*upu_c_2
-        )
-        upu_w_3_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
-        upu_w_3_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
-        upu_w_3_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
         # (upu-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_pivot_size = abs(upu_root_1_t)
         upu_pivot_size_2 = abs(upu_q_3_t)
@@ -6084,22 +6176,13 @@ def _run_condition(m, X):
             1.5624999999999998*upu_pivot_size_3), 1.25*upu_pivot_size_4), 1.25*upu_pivot_size_5)
         )
         # (upu-H_a_3) moment of the column's unit force about the platform origin
-        upu_H_a_3_x = upu_q_y*upu_w_3_z - upu_q_z*upu_w_3_y
-        upu_H_a_3_y = upu_q_z*upu_w_3_x - upu_q_x*upu_w_3_z
-        upu_H_a_3_z = upu_q_x*upu_w_3_y - upu_q_y*upu_w_3_x
+        upu_H_a_3_x = axis_x_upu_axes2_z*upu_q_y - axis_x_upu_axes2_y*upu_q_z
+        upu_H_a_3_y = axis_x_upu_axes2_x*upu_q_z - axis_x_upu_axes2_z*upu_q_x
+        upu_H_a_3_z = axis_x_upu_axes2_y*upu_q_x - axis_x_upu_axes2_x*upu_q_y
         # (upu-Hk_a_1) moment of the column's unit force about the platform origin
-        upu_Hk_a_1_x = (
-        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_z*upu_q_y -
-            upu_end_p1_in_axes2_y*upu_w_3_x - upu_n_c_y*upu_q_z
-        )
-        upu_Hk_a_1_y = (
-        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_x*upu_q_z -
-            upu_end_p1_in_axes2_y*upu_w_3_y - upu_n_c_z*upu_q_x
-        )
-        upu_Hk_a_1_z = (
-        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_y*upu_q_x -
-            upu_end_p1_in_axes2_y*upu_w_3_z - upu_n_c_x*upu_q_y
-        )
+        upu_Hk_a_1_x = upu_n_m1_x + upu_n_c_z*upu_q_y - upu_n_c_y*upu_q_z
+        upu_Hk_a_1_y = upu_n_m1_y + upu_n_c_x*upu_q_z - upu_n_c_z*upu_q_x
+        upu_Hk_a_1_z = upu_n_m1_z + upu_n_c_y*upu_q_x - upu_n_c_x*upu_q_y
         # (spread) rms distance of the platform points from their centroid
         upu_spread_t = b_c_in_platform_x - upu_platform_point_x
         upu_spread_t_2 = b_c_in_platform_y - upu_platform_point_y
@@ -6116,9 +6199,9 @@ def _run_condition(m, X):
         # (spread) rms distance of the platform points from their centroid
         spread_upu += upu_spread_t_4
         # (upu-w_3) force part of reciprocal wrench 3
-        out_H[_H_upu[0][leg]] = upu_w_3_x
-        out_H[_H_upu[1][leg]] = upu_w_3_y
-        out_H[_H_upu[2][leg]] = upu_w_3_z
+        out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
+        out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
+        out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
         # (upu-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_upu[3][leg]] = upu_H_a_3_x
         out_H[_H_upu[4][leg]] = upu_H_a_3_y
@@ -6436,14 +6519,14 @@ def _steps_singularity_distance(m, X):
     return (actuators, legs,)
 
 
-def _steps_mismatch(m, X, q_actuated):
+def _steps_pose_residual(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     q_of_inverse_kinematics_from_2 = q[[2, 5, 8]]
     subtract_1 = q_actuated - q_of_inverse_kinematics_from_2
     constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_1 = -constraints
-    gap = np.concatenate((subtract_1, negative_1))
-    return (gap,)
+    residual = np.concatenate((subtract_1, negative_1))
+    return (residual,)
 
 
 def _steps_slope(m, X):
@@ -6454,14 +6537,14 @@ def _steps_slope(m, X):
 
 
 def _steps_forward_kinematics(m, q_actuated, X0):
-    X = _search(m, _steps_mismatch, _steps_slope, X0, (q_actuated,), (), True)
+    X = _search(m, _steps_pose_residual, _steps_slope, X0, (q_actuated,), (), True)
     return (X,)
 
 
-def _steps_constraint_gap(m, X):
+def _steps_constraint_residual(m, X):
     constraints, = m.run(_run_constraints, ("constraints",), X)
-    gap = -constraints
-    return (gap,)
+    residual = -constraints
+    return (residual,)
 
 
 def _steps_constraint_slope(m, X):
@@ -6470,7 +6553,7 @@ def _steps_constraint_slope(m, X):
 
 
 def _steps_project(m, X):
-    projected = _search(m, _steps_constraint_gap, _steps_constraint_slope, X, (), (), False)
+    projected = _search(m, _steps_constraint_residual, _steps_constraint_slope, X, (), (), False)
     return (projected,)
 
 

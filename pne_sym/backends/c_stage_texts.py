@@ -32,9 +32,8 @@ def stage_routine(bundle: Bundle, stages: Stages, stage: Stage) -> Routine:
     known = {n for other in stages.stages for n in other.exported if other.part == part} - made
     loads = {n: text for n, text in loads.items() if n not in made | known}
     titles = equation_titles(bundle.derivation)
-    shared = Shared(known, "v->", prepared, stages.known_in(stage))
+    shared = Shared(known.union(stage.exported), "v->", prepared, stages.known_in(stage))
     lines = statements(own, titles, shared, loads)
-    lines += [f"v->{c_name(n)} = {c_name(n)};" for n in stage.exported]
     vectors = dict.fromkeys(v for f in users for v in f.inputs)
     parameters = [
         "const prepared *m",

@@ -88,6 +88,10 @@ class Shared:
         text = self.printer.text(expr)
         return re.sub(r"[A-Za-z_]\w*", lambda n: self.texts.get(n[0], n[0]), text)
 
+    def target(self, name: str) -> str:
+        """What a value is assigned to: its place, or a name of its own."""
+        return self.texts.get(c_name(name), f"const real {c_name(name)}")
+
 
 class Stages:
     """The stages of a model.

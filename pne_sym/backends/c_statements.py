@@ -33,7 +33,7 @@ def statements(
     Args:
         assignments: in order.
         titles: of the equations.
-        printer: of expressions.
+        printer: of expressions; a value that has a place there is put into it.
         loads: where the names stand that are not yet at hand; those that are read are taken out.
     """
     waiting = {} if loads is None else loads
@@ -42,7 +42,7 @@ def statements(
             a.equation,
             [
                 *loaded(waiting, a.expr),
-                *statement(f"const real {c_name(a.target.name)} = {printer.text(a.expr)}"),
+                *statement(f"{printer.target(a.target.name)} = {printer.text(a.expr)}"),
             ],
         )
         for a in assignments

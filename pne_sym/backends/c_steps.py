@@ -21,6 +21,7 @@ from pne_sym.backends.c_operations import (
     c_order,
     results_of,
 )
+from pne_sym.backends.c_repeated import repeated
 from pne_sym.backends.c_sizes import Sizes, times
 from pne_sym.backends.c_solve import Eliminations
 from pne_sym.backends.c_text import (
@@ -46,6 +47,8 @@ from pne_sym.program.public import (
     Step,
     Value,
 )
+
+_CHECKS = {1: "check_one", 2: "check_two", 3: "check_three"}
 
 
 class Steps:
@@ -86,11 +89,12 @@ class Steps:
         self.summed = set[str]()
         self.work = (0, "")
         self.before: list[str] = []
+        self.steps = function.steps
 
     def routine(self) -> Routine:
         """Outputs, state by state, and codes of w states from inputs, state by state."""
-        lines = [f"start({self.w}, &why);", *self._inputs()]
-        for step in self.f.steps:
+        lines = [f"start({self.w}, &why);", *self._inputs(), *self._begun()]
+        for step in self.steps:
             lines += self._step(step)
         lines += self._outputs()
         if self.work[0]:
@@ -104,6 +108,17 @@ class Steps:
             return self._called_by_users(body)
         one = Routine.of(f"{self.f.name}_one", self._parameters(self.f.inputs), body, "static")
         return replace(one, result="int")
+
+    def _begun(self) -> list[str]:
+        """A call of another function, with whose steps this one begins."""
+        for other in self.bundle.program.public if not self.lanes else ():
+            values = repeated(self.bundle.program, self.f, other)
+            if values and other.name in self.parts:
+                self.steps = self.steps[len(other.steps) :]
+                results = {f"{label}_out": self._made(value) for label, value in values}
+                call = self.parts[other.name].call_with(results).rstrip(";")
+                return wrap(f"flag_status({call}, &why);", WIDTH - 4, "    ")
+        return []
 
     def _parameters(self, inputs: Iterable[Argument]) -> list[str]:
         return [
@@ -142,6 +157,12 @@ class Steps:
                 for value in (*(o.value for o in apart), *unused)
             ]
             return [*sums, "status_side_by_side(&why, code);", *moves]
+        only = (
+            outputs[0] if len(outputs) == 1 and apart == moved == outputs and not unused else None
+        )
+        if only:
+            ends = f"{self._size(only.value)}, {self.at[only.name]}, {wanted[only.name]}"
+            return statement(f"return finished({ends}, &why)")
         checks = {
             o.name: f"check({self._size(o.value)}, 1, {self.at[o.name]}, why.overflow);"
             for o in judged
@@ -157,7 +178,7 @@ class Steps:
 
     def _unused(self) -> list[Value]:
         """Arrays that runs give and nothing uses: where they overflow the state is none either."""
-        runs = (step for step in self.f.steps if isinstance(step, Run))
+        runs = (step for step in self.steps if isinstance(step, Run))
         return [t for run in runs for t in run.targets if t.size and t.name not in self.used]
 
     # ---- arrays ------------------------------------------------------------------------------
@@ -200,7 +221,7 @@ class Steps:
 
     def _inputs(self) -> list[str]:
         """Inputs that are read, their states side by side; q0 is taken where loops are closed."""
-        lines, checks = [], {}
+        lines, checks = [], list[str]()
         for a in self.f.inputs:
             if a.name not in self.read or a.default is Default.HOME_Q or not a.value.size:
                 continue
@@ -221,12 +242,13 @@ class Steps:
             elif self.lanes:
                 lines.append(f"{a.name} = side_by_side({given}, {ends});")
             else:
-                checks[f"total({a.name}, {size})"] = f"check({size}, 1, {a.name}, why.invalid);"
-        if len(checks) > 1:
-            head = statement(f"const real total_in = {' + '.join(checks)}")
-            body = indented(checks.values())
-            return [*head, "if (!is_finite(total_in)) {", *body, "}", *lines]
-        return [*checks.values(), *lines]
+                checks.append(given)
+        calls = []
+        for k in range(0, len(checks), 3):
+            few = checks[k : k + 3]
+            call = f"{_CHECKS[len(few)]}({', '.join(few)}, why.invalid);"
+            calls += wrap(call, WIDTH - 4, "    ")
+        return [*calls, *lines]
 
     def _filled(self, a: Argument, size: str) -> str:
         """A table of what stands for an input that is left out."""
@@ -276,7 +298,7 @@ class Steps:
         for target, place in zip(step.targets, places, strict=True):
             if target.name not in self.used:
                 continue
-            if step.operation == "extend" and target.name not in self.given:  # by nothing
+            if not place and target.name not in self.given:
                 self.at[target.name] = self.at[value.name]
                 continue
             self.at[target.name] = target.name

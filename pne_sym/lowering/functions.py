@@ -15,7 +15,7 @@ from pne_sym.lowering.closures import closures, given_displacements
 from pne_sym.lowering.inputs import leg_inputs, unpack
 from pne_sym.lowering.meaning import Meaning
 from pne_sym.lowering.shapes import shapes
-from pne_sym.lowering.simplify import inline_single_use, numbered, renamed
+from pne_sym.lowering.simplify import inline_single_use, numbered, renamed, still_used
 from pne_sym.lowering.statements import Guard, Statement
 from pne_sym.program.ir import (
     VECTORS,
@@ -77,7 +77,7 @@ def program_of(
 ) -> Program:
     """The program of slices: what is prepared once for all, and a function for each."""
     leg_types = [t.name for t in derivation.leg_types]
-    sliced = [_sliced(builder, part, meaning) for part in slices]
+    run, sliced = _sliced(builder, slices, meaning)
     constants = set().union(*(s.constants for s in sliced))
     stores = [
         (builder.stage_of(s), Store(s.name, s, 0)) for s in sorted(constants, key=lambda s: s.name)
@@ -95,10 +95,9 @@ def program_of(
     )
     prepare = _blocks(statements, stores, [], leg_types, parameters=True)
     listed = tuple((store.array, at.leg_type) for at, store in stores)
-    reserved = outside | {name for name, _ in listed}
-    functions = {
-        s.part.name: _function(derivation, builder, s, names, reserved, meaning) for s in sliced
-    }
+    reserved = outside | {name for name, _ in listed} | _input_names(derivation)
+    names |= numbered(run, reserved, lambda s, made: meaning.stem(s, ChainMap(made, names)))
+    functions = {s.part.name: _function(derivation, builder, s, names, meaning) for s in sliced}
     return Program(
         prepare,
         listed,
@@ -112,15 +111,29 @@ def program_of(
     )
 
 
-def _sliced(builder: Builder, part: Slice, meaning: Meaning) -> _Sliced:
-    wanted, guards = part.roots(builder)
+def _sliced(
+    builder: Builder, parts: list[Slice], meaning: Meaning
+) -> tuple[list[Statement], list[_Sliced]]:
+    """All statements of the slices, and each slice with its own of these.
+
+    What is written where it is used, and what values are called, is decided for all slices
+    together: what they have in common is the same text in each.
+    """
+    guarded = [part.roots(builder) for part in parts]
+    wanted = set[Any]().union(*(roots for roots, _ in guarded))
+    stores = list(dict.fromkeys(store for part in parts for store in part.stores))
+    guards = list(dict.fromkeys(g for _, found in guarded for g in found))
     run = [s for s in builder.needed(wanted) if s.stage.depends_on_state]
-    run = inline_single_use(run, part.stores, guards)
-    uses = [(store.value, store.equation) for _, store in part.stores]
+    run = inline_single_use(run, stores, guards)
+    uses = [(store.value, store.equation) for _, store in stores]
     run = meaning.told(run, uses + [(e, g.equation) for g in guards for e in (g.value, g.scale)])
-    used = _used(run, part.stores, guards)
-    constants = {s for s in used if not builder.stage_of(s).depends_on_state}
-    return _Sliced(part, run, guards, used, constants)
+    found = []
+    for part, (_, own) in zip(parts, guarded, strict=True):
+        needed = still_used(run, part.stores, own)
+        used = _used(needed, part.stores, own)
+        constants = {s for s in used if not builder.stage_of(s).depends_on_state}
+        found.append(_Sliced(part, needed, own, used, constants))
+    return run, found
 
 
 def _used(
@@ -136,21 +149,12 @@ def _function(
     derivation: Derivation,
     builder: Builder,
     sliced: _Sliced,
-    prepared_names: dict[Any, Any],
-    reserved: set[str],
+    names: dict[Any, Any],
     meaning: Meaning,
 ) -> Function:
     vectors, assignments, checks = _unpacked(derivation, sliced)
     per_leg = _read_per_leg(derivation, builder, sliced)
     vectors |= {entry.vector for read in per_leg.values() for entry in read}
-    given = {s.name for s in sliced.used if builder.maker(s) is None}
-    given |= {a.target.name for a in assignments}
-    own = numbered(
-        sliced.run,
-        reserved | given,
-        lambda s, made: meaning.stem(s, ChainMap(made, prepared_names)),
-    )
-    names = prepared_names | own
     run, stores, guards = renamed(names, sliced.run, sliced.part.stores, sliced.guards)
     constants = {names.get(s, s).name: builder.stage_of(s).leg_type for s in sliced.constants}
     leg_types = [t.name for t in derivation.leg_types]
@@ -164,8 +168,13 @@ def _function(
         {t: tuple(found) for t, found in per_leg.items()},
         tuple(sorted(n for n, leg in constants.items() if not leg)),
         {t: tuple(sorted(n for n, leg in constants.items() if leg == t)) for t in leg_types},
-        meaning.by_name(sliced.run, own),
+        meaning.by_name(sliced.run, names),
     )
+
+
+def _input_names(derivation: Derivation) -> set[str]:
+    """Names of what is read from inputs."""
+    return {a.target.name for named, _ in unpack(derivation).values() for a in named}
 
 
 def _unpacked(

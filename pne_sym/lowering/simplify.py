@@ -52,10 +52,10 @@ def inline_single_use(
             inlined[statement.target] = expr
             continue
         kept.append(statement if expr is statement.expr else statement._replace(expr=expr))
-    return _needed(kept, stores, guards)
+    return still_used(kept, stores, guards)
 
 
-def _needed(
+def still_used(
     statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any]
 ) -> list[Statement]:
     """The statements that are still used: terms may cancel where a value is put in place."""

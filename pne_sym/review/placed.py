@@ -42,14 +42,14 @@ def line_of(model: Model, statement: Statement) -> str:
             f"{model.name}.c",
             model.c,
             rf"/\* ---- {statement.function} ",
-            rf"\s*const real {name} =",
+            rf"\s*(const real |v->){name} =",
         ),
         (f"{model.name}.py", model.python, rf"def _run_{statement.function}\(", rf"\s*{name} ="),
     )
     for path, files, head, form in forms:
         lines = files.get(path, b"").decode(errors="replace").split("\n")
         start = next((k for k, line in enumerate(lines) if re.match(head, line)), len(lines))
-        for k in range(start, len(lines)):
+        for k in (*range(start, len(lines)), *range(start)):  # what functions share stands before
             if re.match(form, lines[k]):
                 return f"{path}:{k + 1}"
     return ""

@@ -103,7 +103,7 @@ def test_what_has_no_statement_says_why() -> None:
     assert "it is ups_q_3, 0, 0 in the frame ups.axes2" in reasons["ups_r_2"]
     assert "written where it is used, in ups-" in reasons["ups_d_G"]
     shown = list(stage_lines(compiled, "c", "qd_2"))
-    assert any("const real ups_qd_2 = " in line for line in shown)
+    assert any("ups_qd_2 = " in line for line in shown)
     assert not any("no statement" in line for line in shown)
 
 
