@@ -105,7 +105,8 @@ class Lowering(Components):
             frame = basis.frames[0]
             for vector in basis.vectors:
                 self.ensure(getattr(vector, "name", ""))
-            names = (getattr(w, "name", "") for w in basis.duals)
+            parts = (*basis.duals, *(part for own in basis.moment_duals for part in own))
+            names = (getattr(part, "name", "") for part in parts)
             self.b.equation = next(self.definition[w].id for w in names if w in self.definition)
             along = [k for k in range(3) if self.rotation.along(frame, "base", k) is not None]
             for k in [*along, *(k for k in (2, 1, 0) if k not in along)]:

@@ -76,7 +76,7 @@ class LegScrews:
 
 @dataclass(frozen=True)
 class _Screw:
-    """A column of a leg's system: a degree of freedom, or a constraint wrench.
+    """A column of a leg's system: a degree of freedom, or what completes these to a basis.
 
     Attributes:
         stem: of the vector reciprocal to it.
@@ -122,10 +122,11 @@ class ScrewWriter:
         )
         wrenches = self._constraint_wrenches(v, joints, missing, dofs)
         for wrench in wrenches:
-            vectors.append(wrench.force)
-            scales.append(g.size if wrench.of_moment else sp.S.One)
-            for row, coefficient in zip(rows, wrench.coefficients, strict=True):
-                row.append(coefficient)
+            vector, turns = wrench.motion
+            vectors.append(vector)
+            scales.append(g.size if any(turn != 0 for turn in turns) else sp.S.One)
+            for row, turn in zip(rows, turns, strict=True):
+                row.append(turn)
         duals, coefficients = self._reciprocals(joints, missing, vectors, rows)
         o, named = self._moment_parts(joints, coefficients, directions)
         self._note_basis(vectors, duals, scales, rows, coefficients)

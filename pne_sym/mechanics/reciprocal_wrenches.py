@@ -9,7 +9,7 @@ Reference: section 3.7, Eqs. 35 to 37.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
@@ -60,6 +60,7 @@ class ConstraintWrench:
         moment: the moment that they make.
         acts: it does work along some motion of the platform.
         of_moment: lambda is a moment, not a force.
+        auxiliary: motion that completes the leg's degrees of freedom in its place; None: its own.
     """
 
     force: Vector
@@ -67,6 +68,21 @@ class ConstraintWrench:
     moment: Vector = ZeroVector
     acts: bool = True
     of_moment: bool = False
+    auxiliary: tuple[Any, tuple[Any, ...]] | None = None
+
+    @property
+    def motion(self) -> tuple[Any, tuple[Any, ...]]:
+        """What completes the leg's degrees of freedom: velocity, turns along the directions.
+
+        Along its force, or about its moment: the leg's force has lambda, and no more, of what
+        works on that motion, so lambda is its component.  Force and moment together would be no
+        motion: a length would have to make them one.
+        """
+        if self.auxiliary is not None:
+            return self.auxiliary
+        if self.of_moment:
+            return ZeroVector, self.coefficients
+        return self.force, tuple(sp.S.Zero for _ in self.coefficients)
 
 
 @dataclass(frozen=True)
@@ -99,6 +115,10 @@ def completed_wrenches(
     writer = _WrenchWriter(book, g, dofs.directions, dofs.frame)
     parts = [writer.reciprocal(k, a, screws, len(rows)) for k, a in enumerate(chosen)]
     found = [writer.of_unit_size(k, a, *parts[k]) for k, a in enumerate(chosen)]
+    if any(auxiliary.kind is Kind.TURN for auxiliary in chosen):
+        # Forces of several wrenches may be in one plane there.
+        columns_of = [(vector, tuple(entries)) for vector, entries in columns]
+        found = [replace(w, auxiliary=c) for w, c in zip(found, columns_of, strict=True)]
     frames = dict.fromkeys(g.frame("axes", g.group[j]) for j in range(g.count, -1, -1))
     book.bases.append(
         ReciprocalBasis(

@@ -190,10 +190,16 @@ def _product(parts: list[Dimension | None]) -> Dimension | None:
 def _reciprocal(expr: Any, units: Units) -> Dimension | None:
     """Of w_k, one over that of v_k; of m_ki that times a length: E_ik times one is like v_k."""
     *indices, vectors, rows = expr.args
-    k = int(indices[0])
-    velocity = dimension(vectors[k], units)
-    if velocity is None:  # a pure turn, or a pure moment
-        turns = (dimension(row[k], units) for row in rows)
-        velocity = next((turn for turn in turns if turn is not None), NONE) * _M
-    force = NONE / velocity
+    velocities = [_of_motion(v, [row[k] for row in rows], units) for k, v in enumerate(vectors)]
+    force = NONE / velocities[int(indices[0])]
     return force if len(indices) == 1 else force * _M
+
+
+def _of_motion(velocity: Any, turns: list[Any], units: Units) -> Dimension:
+    """Dimension of a column's velocity, which is that of its turns times a length."""
+    angular = (dimension(turn, units) for turn in turns)
+    parts = [dimension(velocity, units), *(a and a * _M for a in angular)]
+    found = dict.fromkeys(part for part in parts if part is not None)
+    if len(found) > 1:
+        raise DimensionError(f"no motion: {velocity} [{parts[0]}] and turns {turns} [{parts[1]}]")
+    return next(iter(found), _M)

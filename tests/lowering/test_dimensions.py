@@ -116,7 +116,7 @@ def _conjugate(stored: dict[Entry, Dimension], c: Coordinates) -> Iterator[str]:
             yield f"{array}[{row}] in {unit}"
 
 
-NAMES = ("planar_3rpr", "tripod_3rps", "hybrid_3rrrs", "planar_4rpr_free", "stewart")
+NAMES = ("planar_3rpr", "tripod_3rps", "hybrid_3rrrs", "planar_4rpr_free", "stewart", "tripod_3upu")
 
 
 @pytest.mark.parametrize("name", sampled(list(NAMES), 2))

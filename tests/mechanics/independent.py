@@ -14,12 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from pne_sym.model.manipulator import Body, JointKind, PlatformJointKind
+from pne_sym.model.manipulator import Body, JointKind, PlatformJointKind, Space
 from tests.mechanics.evaluation import Array, Names
 from tests.oracle.closure import leg_closure, perpendicular_pair
 from tests.oracle.coordinates import is_planar, joint_slices, pose_size, task_size
 from tests.oracle.effects import friction, margins, rotors, springs, stored, turning_friction
 from tests.oracle.jets import cross, cross_matrix
+from tests.oracle.projection import completing
 
 _SLIDE = JointKind.PRISMATIC
 
@@ -167,7 +168,12 @@ class Facts:
         """Forces w_j and moments o_j of the reciprocal wrenches: rows by joint number."""
         n = self.moment_directions
         screws = [np.concatenate([self.v(j), n @ self.e(j) * self.turns(j)]) for j in self.free]
-        inverse = np.linalg.pinv(np.array(screws).T)
+        if self.point_leg:
+            inverse = np.linalg.pinv(np.array(screws).T)
+        else:
+            left = np.linalg.svd(np.array(screws).T)[0][:, len(self.free) :]
+            motions = completing(Space.SPATIAL, left, None)
+            inverse = np.linalg.inv(np.column_stack([*screws, motions]))[: len(self.free)]
         w, o = np.full((self.count + 1, 3), np.nan), np.full((self.count + 1, 3), np.nan)
         w[self.free], o[self.free] = inverse[:, :3], inverse[:, 3:] @ n
         return w, o

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pne_sym.model.manipulator import Body, Leg, Manipulator
+from pne_sym.model.manipulator import Body, Leg, Manipulator, Space
 from tests.oracle.base import REST, Base, base_of
 from tests.oracle.bodies import (
     Bodies,
@@ -32,6 +32,7 @@ from tests.oracle.closure import OracleError, closure_residual, leg_closure
 from tests.oracle.coordinates import (
     Pose,
     actuated_indices,
+    is_planar,
     joint_slices,
     passive_extra_rows,
     platform_motion,
@@ -127,6 +128,7 @@ class _LegKinematics:
     `demand` (nc, nv): rates of the conditions by V, joints without extra ones at rest.
     `wrench_map` (6, nc): from the conditions' multipliers to the wrench on the platform at
     the platform joint.  `multipliers` (nc, k): per unit lambda.
+    `split` (m without extra ones, nc): rates of these joints by those of the conditions.
     """
 
     leg: Leg
@@ -138,6 +140,7 @@ class _LegKinematics:
     rates: Array
     wrench_map: Array
     multipliers: Array
+    split: Array
     bodies: Bodies
 
 
@@ -172,6 +175,8 @@ def project(
     A: Array | None = None,
     wrench: Array | None = None,
     base: Base | None = None,
+    *,
+    moments: tuple[int, ...] = (),
 ) -> Result:
     """Evaluate the dynamics at a closed state.
 
@@ -183,6 +188,7 @@ def project(
         A: (nv,) acceleration, default zero.
         wrench: (nw,) external force and moment about the platform origin, default none.
         base: its motion, by default that of `base_of`.
+        moments: by leg, how many multipliers are moments; by default those that are pure here.
 
     Returns:
         The matrices and all derived quantities.
@@ -194,7 +200,7 @@ def project(
     A = np.zeros_like(V) if A is None else np.asarray(A, dtype=float)
     base = base or base_of(manipulator)
     legs = [
-        _leg_kinematics(manipulator, number, X, q[where])
+        _leg_kinematics(manipulator, number, X, q[where], moments[number] if moments else None)
         for number, where in enumerate(joint_slices(manipulator))
     ]
     platform = _platform_bodies(manipulator, X, V.size)
@@ -285,7 +291,9 @@ def accelerated(manipulator: Manipulator, result: Result, tau: Array) -> Array:
     return np.asarray(c + N @ np.linalg.solve(N.T @ result.M @ N, force))
 
 
-def _leg_kinematics(manipulator: Manipulator, number: int, X: Array, q: Array) -> _LegKinematics:
+def _leg_kinematics(
+    manipulator: Manipulator, number: int, X: Array, q: Array, pure: int | None
+) -> _LegKinematics:
     """Rates of a leg's joints by V, and what its freedoms leave to the platform."""
     leg = manipulator.legs[number]
     closure = leg_closure(manipulator, leg, X, q)
@@ -297,11 +305,12 @@ def _leg_kinematics(manipulator: Manipulator, number: int, X: Array, q: Array) -
     task, total = task_size(manipulator.space), rates.shape[1]
     demand = closure.platform @ twist_basis(manipulator.space) @ np.eye(task, total)
     demand += closure.joints @ rates
-    # With fewer freedoms than conditions the pseudo-inverse takes the part of the motion
-    # along the freedoms, also for velocities that are not admissible.
-    rates[free] = -np.linalg.pinv(closure.joints[:, free]) @ demand
-    wrench_map = -_at_joint(manipulator, leg, X) @ closure.platform.T
+    # Motions that complete the freedoms tell what part of one that is not admissible is theirs.
     null_space = left[:, len(free) :]
+    motions = completing(manipulator.space, null_space, pure)
+    split = np.linalg.inv(np.hstack([closure.joints[:, free], motions]))[: len(free)]
+    rates[free] = -split @ demand
+    wrench_map = -_at_joint(manipulator, leg, X) @ closure.platform.T
     unit_rates = taylor(q, np.eye(q.size), np.zeros((q.size,) * 2))
     return _LegKinematics(
         leg=leg,
@@ -313,8 +322,44 @@ def _leg_kinematics(manipulator: Manipulator, number: int, X: Array, q: Array) -
         rates=rates,
         wrench_map=wrench_map,
         multipliers=_unit_multipliers(null_space, demand, wrench_map),
+        split=split,
         bodies=bodies_of([joint.link for joint in leg.joints], chain_poses(leg, unit_rates)),
     )
+
+
+def completing(space: Space, null_space: Array, pure: int | None) -> Array:
+    """(nc, k) motions that complete a leg's freedoms, by the wrenches that these leave out.
+
+    Lambda is the component of the leg's force along the unit force of such a wrench, or of its
+    moment where that is all there is: the motions are along these forces and about these moments.
+
+    Args:
+        space: tells how many conditions are of points.
+        null_space: (nc, k) orthonormal multipliers of the conditions that do no work.
+        pure: how many of them are taken for moments, those with the least forces.
+    """
+    points = 2 if is_planar(space) else 3
+    _, sizes, wrenches = np.linalg.svd(null_space[:points])
+    if pure is None:
+        pure = null_space.shape[1] - int((sizes > RANK_TOLERANCE).sum())
+    motions = null_space @ wrenches.T
+    forces = null_space.shape[1] - pure
+    motions[points:, :forces] = 0.0
+    motions[:points, forces:] = 0.0
+    return np.asarray(motions)
+
+
+def moments_at_home(manipulator: Manipulator) -> tuple[int, ...]:
+    """By leg, how many of the wrenches that it leaves out are pure moments at home."""
+    found, X, q = [], np.array(manipulator.home.X), np.array(manipulator.home.q)
+    for leg, where in zip(manipulator.legs, joint_slices(manipulator), strict=True):
+        free = [index for index, joint in enumerate(leg.joints) if not joint.extra]
+        joints = leg_closure(manipulator, leg, X, q[where]).joints[:, free]
+        null_space = np.linalg.svd(joints)[0][:, len(free) :]
+        points = 2 if is_planar(manipulator.space) else 3
+        forces = np.linalg.matrix_rank(null_space[:points], tol=RANK_TOLERANCE)
+        found.append(null_space.shape[1] - int(forces))
+    return tuple(found)
 
 
 def _extra_selection(manipulator: Manipulator, number: int) -> Array:
@@ -470,7 +515,7 @@ def _joint_acceleration(
         poses = chain_poses(leg.leg, taylor(leg.q, rate, acceleration))
         return closure_residual(manipulator.space, leg.leg, poses[-1], platform).second, poses
 
-    acceleration[leg.free] -= np.linalg.pinv(leg.jacobian[:, leg.free]) @ second_derivative()[0]
+    acceleration[leg.free] -= leg.split @ second_derivative()[0]
     return acceleration, *second_derivative()
 
 
@@ -494,7 +539,7 @@ def _leg_results(
         forces += _in_joints(leg, moving.qd[where], moving.rotors[where]) + _against(leg, moment)
         # Virtual power of joint j: reaction . v_j = tau_j - Gamma_j.
         power = (actuators[where] - forces)[leg.free]
-        reaction = np.linalg.pinv(leg.jacobian[:, leg.free].T) @ power
+        reaction = leg.split.T @ power
         results.append(
             LegResult(
                 motion=motion,

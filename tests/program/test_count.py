@@ -171,18 +171,18 @@ CEILINGS = {
     "planar_4rpr_free": (520, 411),
     "planar_mixed": (563, 428),
     "planar_redundant": (737, 571),
-    "quadrupod": (3831, 2415),
+    "quadrupod": (3094, 2063),
     "sixbar": (468, 379),
     "spherical_3ups": (1386, 981),
     "stewart": (2757, 1926),
     "stewart_7ups": (3191, 2218),
     "stewart_7ups_free": (3209, 2215),
     "stewart_sps": (3747, 2382),
-    "tricept": (3397, 2123),
+    "tricept": (2660, 1771),
     "tripod_3prs": (1242, 873),
     "tripod_3rps": (1014, 726),
     "tripod_3ups": (873, 687),
-    "tripod_3upu": (2733, 1671),
+    "tripod_3upu": (1992, 1422),
 }
 """Operations of `dynamics` and of `required`, roots and divisions included."""
 

@@ -54,8 +54,17 @@ def test_zero_has_every_dimension() -> None:
     assert dimension(sp.Rational(1, 2), UNITS) == NONE
 
 
+_A_WRENCH = sp.Tuple(r, e), sp.Tuple(sp.Tuple(q, L))
+"""A motion, and a unit force with its moment among motions: only a length would make it one."""
+
+
 @pytest.mark.parametrize(
-    "expr", [r + v, L + q, sp.sin(L), 1 + Dot(r, r), sp.atan2(L, q), sp.sqrt(L + Dot(r, r))]
+    "expr",
+    [
+        *(r + v, L + q, sp.sin(L), 1 + Dot(r, r), sp.atan2(L, q), sp.sqrt(L + Dot(r, r))),
+        DualVector(sp.Integer(0), *_A_WRENCH),
+        DualScalar(sp.Integer(1), sp.Integer(0), *_A_WRENCH),
+    ],
 )
 def test_what_does_not_fit(expr: object) -> None:
     with pytest.raises(DimensionError):

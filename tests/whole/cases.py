@@ -14,7 +14,7 @@ from tests.models import catalogue, live_parameters, module, same_branch_spec, s
 from tests.oracle.base import Carried, base_of
 from tests.oracle.comparison import relative_error
 from tests.oracle.effects import margins
-from tests.oracle.projection import Result, project
+from tests.oracle.projection import Result, moments_at_home, project
 from tests.oracle.specs import State
 
 Array = NDArray[np.float64]
@@ -66,7 +66,8 @@ def at(name: str, spec: Manipulator, state: State) -> Case:
     """A catalogue entry's model with the parameters of `spec` at a state."""
     model = module(catalogue(name))
     p = live_parameters(catalogue(name), spec)
-    return Case(model, p, spec, state, project(spec, *state), guess_of(model, state.q))
+    oracle = project(spec, *state, moments=moments_at_home(catalogue(name)))
+    return Case(model, p, spec, state, oracle, guess_of(model, state.q))
 
 
 def own(spec: Manipulator, state: State) -> Case:

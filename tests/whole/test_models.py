@@ -19,10 +19,11 @@ from pne_sym.model.manipulator import Home, PlatformJointKind
 from pne_sym.model.reader import from_mapping
 from tests.models import catalogue, state_at
 from tests.oracle.comparison import relative_error
-from tests.oracle.coordinates import extra_indices, joint_slices
+from tests.oracle.coordinates import extra_indices, joint_slices, platform_rotation
 from tests.oracle.pinocchio_model import PinocchioModel
+from tests.oracle.projection import moments_at_home
 from tests.oracle.specs import State, randomise
-from tests.sampling import entries
+from tests.sampling import entries, sampled
 from tests.whole.cases import TOLERANCE, Case, answers, assert_right, at, case, own
 
 REFERENCE_TOLERANCE = 1e-11
@@ -52,6 +53,8 @@ LEGS_ALL_DIFFER = (
 """No two legs are of the same structure and on the same branch."""
 GENERAL = ("fivebar_offset", "hexapod_6uhs", "planar_mixed", "tripod_3prs")
 """A sample, constrained, mixed, with screws; other structures are in `test_generality`."""
+RESTRICTED = ("quadrupod", "tricept", "tripod_3prs", "tripod_3rps", "tripod_3upu")
+"""Legs in space that restrict the platform; unit forces come before moments."""
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -83,6 +86,29 @@ def test_pinocchio(name: str) -> None:
     assert relative_error(found["A"], motion.A) < TOLERANCE
     width = found["reactions"].shape[-1]
     assert relative_error(found["reactions"], motion.reactions[:, :width]) < TOLERANCE
+
+
+@pytest.mark.parametrize("name", sampled(RESTRICTED, 2))
+def test_lambda_is_a_component_of_the_leg_s_force(name: str) -> None:
+    """The rest of a leg's force has no part along the unit forces, no moment about the others."""
+    c = case(name, 1)
+    m, s = c.model, c.state
+    _, lam = m.inverse_dynamics(s.X, s.V, s.A, c.p, wrench=s.wrench, **c.guess)
+    found = answers(c)["reactions"]
+    reactions = np.pad(found, ((0, 0), (0, 6 - found.shape[1])))
+    moments, units = moments_at_home(catalogue(name)), m.Hk(s.X, c.p, **c.guess)[: m.NV].T
+    first = 0
+    for k, leg in enumerate(c.oracle.legs):
+        count = len(leg.constraint_wrenches)
+        arm = platform_rotation(c.spec, s.X) @ np.array(c.spec.legs[k].platform_point)
+        force, moment = np.split(units[first : first + count], [3], axis=1)
+        own = np.hstack([force, moment - np.cross(arm, force)])
+        rest = reactions[k] - lam[first : first + count] @ own
+        along = count - moments[k]
+        parts = [*(own[:along, :3] @ rest[:3]), *(own[along:, 3:] @ rest[3:])]
+        assert np.abs(parts).max(initial=0.0) < TOLERANCE * np.abs(reactions[k]).max()
+        first += count
+    assert first == m.NC > 0
 
 
 @pytest.mark.parametrize("reference", REFERENCES)

@@ -19,7 +19,7 @@ from tests.models import catalogue, live_parameters, manifest, module, same_bran
 from tests.oracle.closure import assemble
 from tests.oracle.comparison import relative_error
 from tests.oracle.mechanisms import mechanism
-from tests.oracle.projection import project
+from tests.oracle.projection import moments_at_home, project
 from tests.oracle.specs import from_dict
 from tests.whole.cases import Array
 
@@ -81,8 +81,9 @@ def test_every_parameter_is_live(name: str, parameter: str) -> None:
     V = np.linspace(-1.0, 1.2, model.NV)
     Hk = project(spec, X, q, V).Hk
     V = V - np.linalg.pinv(Hk.T) @ (Hk.T @ V)
-    oracle = project(spec, X, q, V)
+    oracle = project(spec, X, q, V, moments=moments_at_home(nominal))
     expected = [oracle.M, oracle.Z, oracle.H, q, oracle.qd, oracle.kinetic, oracle.potential]
+    expected += [_span(oracle.Hk)] * (model.NC > 0)
     found = _values(model, X, V, p)
     assert _distance(found, expected) < 1e-9
     before = _values(model, X, V, model.Parameters())
@@ -95,7 +96,13 @@ def _distance(found: list[Any], expected: list[Any]) -> float:
 
 def _values(model: Any, X: Array, V: Array, p: Any) -> list[Any]:
     q, qd = model.inverse_kinematics(X, p), model.joint_rates(X, V, p)
-    return [*model.dynamics(X, V, p), q, qd, *model.energy(X, V, p)]
+    constraints = [_span(model.Hk(X, p))] if model.NC else []
+    return [*model.dynamics(X, V, p), q, qd, *model.energy(X, V, p), *constraints]
+
+
+def _span(Hk: Array) -> Array:
+    """Projection on what the columns span, whatever their units."""
+    return np.asarray(Hk @ np.linalg.pinv(Hk))
 
 
 @pytest.mark.parametrize("name", ["fivebar_offset", "planar_3prr", "stewart", "tripod_3rps"])
