@@ -252,10 +252,27 @@ class Lowering(Components):
                 for f in (equation.rhs, *equation.forms)
                 if self._is_there(f, frame)
             ]
+            makers += self._in_parts(equation.rhs, home, frame, symbol.name)
         before, self.b.equation = self.b.equation, equation.id
         value = self.trials.cheapest(makers)
         self.b.equation = before
         return self.trials.store(self._vectors, key, value)
+
+    def _in_parts(self, total: Any, home: str, frame: str, hint: str) -> Iterator[Any]:
+        """A way to a sum: what is there in a frame already is added there, the rest turned."""
+        terms: tuple[list[Any], list[Any]] = ([], [])
+        for term in total.args if isinstance(total, n.VectorAdd) else ():
+            terms[self._is_there(term, frame)].append(term)
+        rest, here = (n.vector_sum(of) for of in terms)
+        if all(terms):
+            yield lambda: vectors.summed(
+                self,
+                (
+                    self.rotation.vector(self.vector(rest, home), home, frame, f"{hint}_rest"),
+                    self.vector(here, frame),
+                ),
+                hint,
+            )
 
     def _is_there(self, expr: Any, frame: str) -> bool:
         """Whether all vectors of an expression have components in a frame already."""

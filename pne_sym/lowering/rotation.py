@@ -181,7 +181,10 @@ class Rotation:
     def _tensor_by_columns(
         self, t: Tensor9, origin: str, target: str, left: int, hint: str
     ) -> Tensor9:
-        """T_kk E + sym(x a^T) + sym(y b^T) with two axes x, y: axis k is eliminated."""
+        """T_kk E + sym(x a^T) + sym(y b^T) with two axes x, y: axis k is eliminated.
+
+        Where no entry on the diagonal stays, the last follows from the trace, which does.
+        """
         b, k = self.b, left
         i, j = (k + 1) % 3, (k + 2) % 3
         x, y, z = (self.axis_column(origin, target, m) for m in (i, j, k))
@@ -194,6 +197,10 @@ class Rotation:
         for p in range(3):
             half_pp = b.add((b.mul(x[p], a[p]), b.mul(y[p], c[p])))
             rows[p][p] = b.add((t[k][k], b.mul(sp.Integer(2), half_pp)))
+        if all(b.stage_of(rows[p][p]).depends_on_state for p in range(3)):
+            trace = b.add([t[m][m] for m in range(3)])
+            rows[2][2] = b.add((trace, -rows[0][0], -rows[1][1]))
+        for p in range(3):
             for q in range(p + 1, 3):
                 rows[p][q] = rows[q][p] = b.add(
                     (b.mul(x[p], a[q]), b.mul(x[q], a[p]), b.mul(y[p], c[q]), b.mul(y[q], c[p]))

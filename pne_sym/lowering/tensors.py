@@ -71,9 +71,29 @@ def _total(of: Components, expr: Any, frame: str, hint: str) -> Tensor9:
     value, leg_type = expr.args
     t = of.tensor(value, frame)
     stem = f"{hint or 'total'}_{leg_type.name}"
-    found = _entries(lambda i, j: of.b.total(t[i][j], leg_type.name, _entry(stem, i, j)))
+    traceless = _has_no_trace(value)
+
+    def entry(i: int, j: int) -> Atom:
+        if i == j == 0 and traceless:
+            return -of.b.add([entry(1, 1), entry(2, 2)], _entry(stem, 0, 0))
+        return of.b.total(t[i][j], leg_type.name, _entry(stem, i, j))
+
+    found = _entries(entry)
     of.note_total(expr, frame, found)
     return found
+
+
+def _has_no_trace(expr: Any) -> bool:
+    """Whether the diagonal sums up to zero by structure: of a symmetric tensor times a skew one."""
+    if isinstance(expr, n.TensorScale):
+        return _has_no_trace(expr.args[1])
+    if not isinstance(expr, n.Compose):
+        return False
+    first, second = expr.args
+    pairs = ((first, second), (second, first))
+    return any(
+        isinstance(skew, n.Skew) and getattr(other, "is_symmetric", False) for skew, other in pairs
+    )
 
 
 def _entry(hint: str, i: int, j: int) -> str:

@@ -25,10 +25,11 @@ def _add(of: Components, expr: Any, frame: str, hint: str) -> Triple:
     parts = [of.vector(term, frame) for term in plain]
     for basis, weights in duals:
         parts.append(_combination(of, basis, weights, frame))
-    return _sum(of, parts, hint)
+    return summed(of, parts, hint)
 
 
-def _sum(of: Components, parts: Sequence[Triple], hint: str) -> Triple:
+def summed(of: Components, parts: Sequence[Triple], hint: str) -> Triple:
+    """Components of a sum."""
     return tuple(
         of.b.add([p[i] for p in parts], f"{hint}_{XYZ[i]}" if hint else "", named=bool(hint))
         for i in range(3)

@@ -39,7 +39,7 @@ def test_what_only_the_sums_meet_stands_behind_the_legs() -> None:
     dynamics = Parts(compiled, run["dynamics"], Stages(run.values()), summed=True)
     before, between = ("\n".join(r.body) for r in (dynamics.before(), dynamics.between()))
     assert "stage_X(" in before
-    assert "stage_M_dynamics(" in between
+    assert "stage_Z_dynamics(" in between
 
 
 def test_statements_that_share_a_local_value_stay_together() -> None:
