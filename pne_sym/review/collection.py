@@ -62,6 +62,9 @@ def _told(name: str, before: Source | None, after: Source | None, options: Optio
         return Part(name, f"{what}: {_described(known)}")
     except (InputError, SpecError, TargetError) as error:
         return Part(name, f"cannot be compared: {printable(str(error), 400)}")
+    except Exception as error:  # noqa: BLE001 - the others are compared all the same
+        told = printable(f"internal error: {type(error).__name__}: {error}", 400)
+        return Part(name, f"cannot be compared: {told}")
 
 
 def _compared(name: str, before: Source, after: Source, options: Options) -> Part:
@@ -97,10 +100,12 @@ def as_text(before: Source, after: Source, parts: list[Part]) -> Iterator[str]:
     for part in (p for p in parts if not p.is_equal):
         yield ""
         yield f"{part.name}: {part.headline}"
+        yield from (part.measured,) if part.measured else ()
         for section in part.sections:
             yield ""
             yield section.title
             yield from section.lines
+        yield from (f"note: {note}" for note in part.notes)
 
 
 def as_json(before: Source, after: Source, parts: list[Part]) -> str:

@@ -26,13 +26,14 @@ from pne_sym.review.difference import (
     Deviation,
     Edit,
     EquationDifference,
+    FileDifference,
     Verdict,
 )
 from pne_sym.review.edits import best_edits
 from pne_sym.review.effect import effects
 from pne_sym.review.equations import DerivationComparer
 from pne_sym.review.execution import ExecutionError
-from pne_sym.review.files import differing, file_differences
+from pne_sym.review.files import file_differences
 from pne_sym.review.interface import interface_changes, operation_changes
 from pne_sym.review.model import Model, by_path, printed_equations
 from pne_sym.review.placed import contradictions
@@ -70,39 +71,40 @@ def compare(
         c: with `run`, the C too.
     """
     found = Comparison(before.label, after.label, tolerance, (0, 0), (), (), (), ())
-    changed: list[str] = []
     if before.folder is not None or after.folder is not None:
         before, after = _of_the_same_targets(before, after)
-        changed = differing(before.files, after.files)
-        same = len(before.files.keys() | after.files.keys()) - len(changed)
-        found = replace(found, identical_files=same)
-        if not any(_may_be_generated(p, before, after) for p in changed):
-            return replace(found, files=file_differences(before.files, after.files, ()))
+        files = file_differences(before.files, after.files, ())
+        same = len(before.files.keys() | after.files.keys()) - len(files)
+        found = replace(found, identical_files=same, files=files)
+        if not any(_may_be_generated(f.path, before, after) for f in files):
+            return found
         before, after = reproduced(before), reproduced(after)
-    ours = before.bundle is not None and after.bundle is not None
-    if changed:
-        both = [p for p in changed if before.has_generated(p) and after.has_generated(p)]
-        accounted = both if ours else ()
-        found = replace(found, files=file_differences(before.files, after.files, accounted))
+    alignment = align(before.manifest, after.manifest, (before.written, after.written))
+    of = _Pair(before, after, alignment, seed, run=run, c=c)
     found = replace(
         found,
+        files=of.accounted(found.files),
         deviations=(*before.deviations, *after.deviations),
         operations=tuple(operation_changes(before, after)),
         specification=_specification(before, after),
     )
-    alignment = align(before.manifest, after.manifest, (before.written, after.written))
-    if ours or run:
-        try:
-            return _with_values(found, _Pair(before, after, alignment, seed, run=run, c=c))
-        except ExecutionError as error:
-            found = replace(found, not_compared=str(error))
-    else:
-        found = replace(found, not_compared=_reason(found.deviations))
+    if not (of.ours or run):
+        return _as_printed(found, of, _reason(found.deviations))
+    try:
+        with np.errstate(all="ignore"):  # states that are impossible have no values
+            return _with_values(found, of)
+    except ExecutionError as error:
+        return _as_printed(found, of, str(error))
+
+
+def _as_printed(found: Comparison, of: _Pair, reason: str) -> Comparison:
+    """The comparison by what the folders say: nothing of them is run."""
     return replace(
         found,
-        equations=tuple(_compare_reports(before.report, after.report)),
-        interface=tuple(interface_changes(before, after, (), alignment)),
-        notes=tuple(_notes(before, after, run=run)),
+        not_compared=reason,
+        equations=tuple(_compare_reports(of.before.report, of.after.report)),
+        interface=tuple(interface_changes(of.before, of.after, (), of.alignment)),
+        notes=tuple(_notes(of.before, of.after, run=of.run)),
     )
 
 
@@ -121,6 +123,12 @@ class _Pair:
     def ours(self) -> bool:
         """Whether the derivations of both are known."""
         return self.before.bundle is not None and self.after.bundle is not None
+
+    def accounted(self, files: Sequence[FileDifference]) -> tuple[FileDifference, ...]:
+        """Files that differ; those that are this pne-gen's own text in both are compared."""
+        models = (self.before, self.after)
+        own = [f.path for f in files if self.ours and all(m.has_generated(f.path) for m in models)]
+        return file_differences(self.before.files, self.after.files, own) if own else tuple(files)
 
 
 def _specification(before: Model, after: Model) -> tuple[Edit, ...] | None:

@@ -123,8 +123,9 @@ def _moved(old: Any, new: Any) -> str:
 
 
 def _marked(what: str, old: Any, new: Any) -> str:
-    known = old if old is not None else new
-    return "" if isinstance(known, list) else f"{'now' if new else 'no longer'} {what}"
+    if isinstance(old, list) or isinstance(new, list):
+        return f"{what}: {plain(old or False)} -> {plain(new or False)}"
+    return f"{'now' if new else 'no longer'} {what}"
 
 
 def _called(old: Any, new: Any) -> str:
@@ -152,6 +153,13 @@ def _gravity(old: Any, new: Any) -> str:
     return f"gravity turned by {_degrees(turn)}{'' if same else f', {value}'}"
 
 
+def _platform_joint(old: Any, new: Any) -> str:
+    kinds = [v.get("kind") if isinstance(v, Mapping) else v for v in (old, new)]
+    return (
+        "" if None in kinds or kinds[0] == kinds[1] else f"platform joint {kinds[0]} -> {kinds[1]}"
+    )
+
+
 def _limits(old: Any, new: Any) -> str:
     if not all(isinstance(v, list) and len(v) == 2 for v in (old, new)):
         return ""
@@ -167,6 +175,7 @@ _OWN = {
     "inertia_about": _about,
     "gravity": _gravity,
     "displacement": _limits,
+    "platform_joint": _platform_joint,
 }
 
 

@@ -27,9 +27,11 @@ def rank(path: str, told: str) -> tuple[int, str]:
         return (3, "")
     if keys[0] == "legs" and keys[-1] in ("type", "order"):
         return (1, "")
-    if told.endswith((" added", " removed", " inserted")) or "inserted" in told:
+    if path.endswith("]") or "inserted" in told:
         return (1, "")
-    return (next((k for k, of in enumerate(_RANKS) if keys[-1] in of), len(_RANKS)), "")
+    known = next((k for k, of in enumerate(_RANKS) if keys[-1] in of), None)
+    added = told.endswith((" added", " removed"))
+    return (known if known is not None else 2 if added else len(_RANKS), "")
 
 
 def words(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from pne_sym.derivation import Equation, Frame, Given, leg_sums
+from pne_sym.derivation import Equation, Frame, Given, ReciprocalBasis, leg_sums
 from pne_sym.review.plain import plain
 
 
@@ -42,6 +42,16 @@ def given_text(given: Given) -> str:
 def frame_text(frame: Frame) -> str:
     """How a frame stands in its parent."""
     return str((frame.rotation, frame.axes, frame.rows, frame.angle))
+
+
+def basis_facts(basis: ReciprocalBasis) -> dict[str, str]:
+    """What a reciprocal basis is solved from, by words."""
+    words = {
+        "vectors": basis.vectors, "reciprocal": basis.duals, "sizes": basis.scales,
+        "frames": basis.frames, "further rows": basis.rows,
+        "along moments": basis.moment_duals, "length": basis.length,
+    }  # fmt: skip
+    return {word: str(value) for word, value in words.items()}
 
 
 def summed_types(expr: Any) -> list[str]:

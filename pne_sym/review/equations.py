@@ -17,6 +17,7 @@ from pne_sym.review.alignment import Alignment
 from pne_sym.review.arrays import assembled, by_array
 from pne_sym.review.difference import EquationDifference, Gap, Verdict
 from pne_sym.review.equation_text import (
+    basis_facts,
     components,
     conditions,
     formula,
@@ -331,20 +332,18 @@ class DerivationComparer:
         return found
 
     def _bases(self) -> Iterator[EquationDifference]:
-        old = {x.id: str(x) for x in self.a.derivation.bases}
+        """Reciprocal bases that are solved otherwise: the facts that are others."""
+        old = {x.id: basis_facts(x) for x in self.a.derivation.bases}
         for x in self.b.derivation.bases:
-            partner = self.names.partner.get(x.id, x.id)
-            if partner in old and old[partner] != self.names.as_before(str(x)):
-                yield EquationDifference(
-                    x.id,
-                    "reciprocal basis",
-                    "how it is solved",
-                    x.id,
-                    Verdict.CHANGED,
-                    old[partner],
-                    str(x),
-                    note="data of the lowering; values are compared by function",
-                )
+            facts, known = basis_facts(x), old.get(self.names.partner.get(x.id, x.id))
+            if known is None:
+                continue
+            other = [k for k, v in facts.items() if known[k] != self.names.as_before(v)]
+            if other:
+                sides = ["\n".join(f"{k}: {of[k]}" for k in other) for of in (known, facts)]
+                note = "data of the lowering; values are compared by function"
+                about = (x.id, "reciprocal basis", "how it is solved", x.id, Verdict.CHANGED)
+                yield EquationDifference(*about, sides[0], sides[1], note=note)
 
     def _outputs(self) -> Iterator[EquationDifference]:
         """Where quantities stand in the arrays that the code returns."""

@@ -2,13 +2,14 @@
 
 GitHub takes comments of 65,536 characters, of which some are left for what a workflow adds.
 Where a comment would be longer, details go first, then whole sections, model by model from the
-longest; what was left out is said.
+longest; what was left out is named.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from textwrap import shorten
 
 from pne_sym.review.diff_text import Section, measured, sections, verdict
 from pne_sym.review.difference import Comparison
@@ -16,7 +17,9 @@ from pne_sym.review.difference import Comparison
 LIMIT = 65_000
 _RESERVE = 600
 """For the line that tells what is left out."""
-_LEVELS = 3
+_LEVELS = 4
+_BY_CAUSE = ("structure", "interface")
+"""Sections that the specification and the effect make up for."""
 _FOLD = 12
 """Lines of a section that are shown without folding."""
 
@@ -29,15 +32,20 @@ class Part:
         name: of the model.
         headline: one line, plain text.
         is_equal: nothing else is told.
-        intro: plain lines.
+        versions: what was compared.
+        measured: how closely, in a line.
+        notes: what limits the comparison.
         sections: what is told, the last first to be left out.
-        level: how much is told: 0 all, 1 without details, 2 specification alone, 3 the headline.
+        level: how much is told: 0 all, 1 without details, 2 without equations and interface
+            either, 3 specification alone, 4 the headline.
     """
 
     name: str
     headline: str
     is_equal: bool = False
-    intro: tuple[str, ...] = ()
+    versions: tuple[str, str] | None = None
+    measured: str = ""
+    notes: tuple[str, ...] = ()
     sections: tuple[Section, ...] = ()
     level: int = 0
 
@@ -54,15 +62,15 @@ def as_markdown(found: Comparison) -> Iterator[str]:
 
 def part_of(name: str, found: Comparison) -> Part:
     """What is told of a comparison."""
-    notes = tuple(f"> {escaped(note)}" for note in found.notes)
-    about = f"{code(found.before)} → {code(found.after)}"
-    intro = (f"{about}: {escaped(told)}." if (told := measured(found)) else about, *notes)
-    return Part(name, verdict(found), found.equal, intro, tuple(sections(found)))
+    pair = (found.before, found.after)
+    parts = tuple(sections(found))
+    return Part(name, verdict(found), found.equal, pair, measured(found), found.notes, parts)
 
 
 def comment(parts: Sequence[Part]) -> Iterator[str]:
     """Markdown of several models: the equal ones in one line together, then the others."""
     count, of = sum(not p.is_equal for p in parts), len(parts)
+    gone = [p.name for p in parts]
     parts = _within([*parts], LIMIT - _RESERVE)
     equal = [p.name for p in parts if p.is_equal]
     others = [p for p in parts if not p.is_equal]
@@ -75,27 +83,38 @@ def comment(parts: Sequence[Part]) -> Iterator[str]:
         yield f"#### {escaped(part.name)}: {escaped(part.headline)}"
         if part.level < _LEVELS:
             yield from _body(part)
-    if len(parts) < of:
+    if gone := gone[len(parts) :]:
         yield ""
-        yield f"And {of - len(parts)} further models, left out: the comment would be too long."
+        names = shorten(", ".join(gone), _RESERVE // 2, placeholder=" ...")
+        yield f"And {len(gone)} further models, left out: {escaped(names)}"
     yield from _left_out(others)
 
 
 def _body(part: Part) -> Iterator[str]:
     yield ""
-    yield from part.intro
-    for section in _kept(part):
+    if part.versions is not None:
+        about = " → ".join(map(code, part.versions))
+        yield f"{about}: {escaped(part.measured)}." if part.measured else about
+    yield from (f"> {escaped(note)}" for note in part.notes)
+    kept = _kept(part)
+    for section in kept:
         folded = section.detail or len(section.lines) > _FOLD
         yield from _section(section, is_open=not folded)
+    if gone := [s.title for s in part.sections if s not in kept]:
+        yield ""
+        yield f"> Left out, as the comment would be too long: {escaped('; '.join(gone))}."
 
 
 def _kept(part: Part) -> list[Section]:
     if part.level == 0:
         return list(part.sections)
+    plain = [s for s in part.sections if not s.detail]
     if part.level == 1:
-        return [s for s in part.sections if not s.detail]
-    first = [s for s in part.sections if s.title == "specification"]
-    return first or list(part.sections[:1])
+        return plain
+    if part.level == 2:
+        return [s for s in plain if s.title not in _BY_CAUSE]
+    first = [s for s in plain if s.title == "specification"]
+    return first or plain[:1]
 
 
 def _size(part: Part) -> int:
@@ -128,14 +147,11 @@ def _within(parts: list[Part], limit: int) -> list[Part]:
 
 
 def _left_out(parts: Sequence[Part]) -> Iterator[str]:
-    """What the limit did not leave room for."""
-    words = ("", "rewritings and counts", "all but the specification", "all but the headline")
-    told = [f"of {p.name or 'it'} {words[p.level]}" for p in parts if p.level and not p.is_equal]
+    """Of what only the headline had room; what else is left out is told in its place."""
+    told = sum(p.level == _LEVELS for p in parts)
     if told:
         yield ""
-        shown = "; ".join(told)
-        shown = shown if len(shown) < _RESERVE - 100 else f"of {len(told)} models details"
-        yield f"> Left out, the comment would be too long: {escaped(shown)}."
+        yield f"> Of {told} models no more than the headline: the comment would be too long."
 
 
 def _section(section: Section, *, is_open: bool) -> Iterator[str]:

@@ -8,8 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from pne_sym.review import versions
 from pne_sym.review.diff_text import Section
 from pne_sym.review.markdown import LIMIT, Part, comment, escaped
+from pne_sym.review.model import Model
+from pne_sym.review.sources import Source
 from tests.cli.test_generate import own_spec
 from tests.review.folders import diff, write
 
@@ -46,6 +49,30 @@ def test_one_that_cannot_be_compared_does_not_stop_the_others(pairs: tuple[Path,
     told = json.loads(diff(before, after, "--json").output)
     assert told["equal"] is False
     assert told["models"].keys() == {"planar_3rpr", "fivebar_revolute", spec.stem}
+
+
+def test_an_internal_error_of_one_model_does_not_stop_the_others(
+    pairs: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(source: Source) -> Model:
+        raise ZeroDivisionError("a fault of ours")
+
+    before, after = pairs
+    (after / "planar_3rpr/planar_3rpr.md").write_text("other")
+    monkeypatch.setattr(versions, "version_of", broken)
+    done = diff(before, after)
+    assert done.exit_code == 1
+    assert "planar_3rpr: cannot be compared: internal error: ZeroDivisionError" in done.output
+    assert "equal: fivebar_revolute" in done.output
+
+
+def test_why_values_are_not_compared_is_told_of_each_model(pairs: tuple[Path, Path]) -> None:
+    before, after = pairs
+    module = after / "planar_3rpr/planar_3rpr.py"
+    module.write_text(module.read_text() + "\n# a remark\n")
+    done = diff(before, after)
+    assert "\nvalues not compared: " in done.output
+    assert "note: equations, interface and operations are compared as the" in done.output
 
 
 def test_a_place_is_kept_when_folders_are_compared(pairs: tuple[Path, Path]) -> None:
@@ -85,10 +112,10 @@ def part(name: str, lines: int) -> Part:
     ("count", "lines", "what"),
     [
         (3, 10, ""),
-        (3, 100, "of m0 rewritings and counts"),
-        (9, 300, "of m0 all but the specification"),
-        (190, 100, "all but the headline"),
-        (2000, 10, "details"),
+        (3, 100, "too long: rewritings and counts."),
+        (9, 300, "too long: structure; rewritings and counts."),
+        (190, 100, "models no more than the headline: the comment"),
+        (2000, 10, "further models, left out: m"),
     ],
 )
 def test_the_limit_of_a_comment(count: int, lines: int, what: str) -> None:
@@ -96,15 +123,28 @@ def test_the_limit_of_a_comment(count: int, lines: int, what: str) -> None:
     made = list(comment(parts))
     text = "\n".join(made)
     assert len(text.encode()) <= LIMIT
-    assert ("Left out" in text) == bool(what)
-    if what:
-        assert what in text or f"of {count} models details" in text
+    assert what in text
+    assert bool(what) == ("too long" in text)
     if count < 500:
         assert all(f"#### m{k}: " in text for k in range(count))
     else:
         assert "further models" in text
     assert text.count("<details") == text.count("</details>")
     assert f"{count} of {count} models differ" in text
+
+
+def test_effects_are_left_out_after_equations() -> None:
+    """What a change means is read before how it came about."""
+    lines = tuple(f"line {k} {80 * 'e'}" for k in range(40))
+    titles = ("specification", "structure", "values", "interface", "effect")
+    made = [
+        Part(f"m{k}", "different", sections=tuple(Section(t, lines) for t in titles))
+        for k in range(5)
+    ]
+    text = "\n".join(comment(made))
+    assert text.count("<summary>Effect</summary>") == 5
+    assert 0 < text.count("<summary>Structure</summary>") < 5
+    assert "> Left out, as the comment would be too long: structure; interface." in text
 
 
 def test_nothing_in_a_headline_acts() -> None:

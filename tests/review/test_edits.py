@@ -165,6 +165,22 @@ CASES: list[tuple[dict[str, Any], dict[str, Any], list[tuple[str, str]]]] = [
         ],
     ),
     (
+        {"legs": [leg({**R, "kind": "U"}, P)]},
+        {
+            "legs": [
+                leg({**R, "kind": "S", "extra": [False, True]}, {**P, "friction": {"viscous": 1}})
+            ]
+        },
+        [
+            ("leg 1, joint 1 (S): kind U -> S", "legs[0].joints[0].kind"),
+            ("leg 1, joint 2 (P): friction added", "legs[0].joints[1].friction"),
+            (
+                "leg 1, joint 1 (S): an extra coordinate: false -> [false, true]",
+                "legs[0].joints[0].extra",
+            ),
+        ],
+    ),
+    (
         {"gravity": [0, -9.81]},
         {"gravity": [1.62, 0]},
         [("gravity turned by 90 degrees, 9.81 -> 1.62 m/s^2 (-83.5 %)", "gravity")],

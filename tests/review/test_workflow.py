@@ -209,6 +209,23 @@ def test_a_comment_goes_to_the_pull_request_that_was_reviewed(runner: Runner) ->
     assert not (runner.folder / "hacked").exists()
 
 
+def test_a_link_in_the_artifact_is_not_followed(runner: Runner) -> None:
+    """It could point to what the second workflow alone may read."""
+    commented(runner, "")
+    (runner.place / "gh.log").unlink()
+    secret = runner.place / "secret"
+    for name, text in (("number", "7\n"), ("comment.md", "a token")):
+        file = runner.folder / "review" / name
+        kept = file.read_text()
+        secret.write_text(text)
+        file.unlink()
+        file.symlink_to(secret)
+        assert runner.run(steps(COMMENT)["Comment"]).returncode != 0
+        assert not (runner.place / "gh.log").exists()
+        file.unlink()
+        file.write_text(kept)
+
+
 def test_rights() -> None:
     assert "pull_request_target" not in GUIDE.replace("`pull_request_target`", "")
     assert "--run" not in REVIEW + OWN + COMMENT
