@@ -52,7 +52,7 @@ def _letters(bundle: Bundle) -> str:
 def cases(bundle: Bundle) -> tuple[str, ...]:
     """The cases of section 3 of the paper that apply."""
     sizes, manipulator = bundle.coordinates.sizes, bundle.manipulator
-    joints = [joint for leg in manipulator.legs for joint in leg.joints]
+    joints = manipulator.joints
     actuators = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
     spare = [
         sum(joint.actuated and joint.extra for joint in leg.joints) for leg in manipulator.legs
