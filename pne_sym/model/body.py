@@ -47,7 +47,8 @@ def read_body(entry: Entry, *, plane: bool, also: tuple[str, ...] = ()) -> Body:
     if about and about.choice(("centre_of_mass", "origin")) == "origin":
         tensor = _moved_to_centre(tensor, mass, centre)
     if plane:
-        _check_planar(inertia, tensor)
+        if (izz := tensor[2][2]) < 0.0:
+            raise inertia.fault("izz about the centre of mass not negative", _told(izz, "izz"))
         return Body(mass, centre, tensor)
     return Body(mass, centre, _checked_spatial(inertia, tensor))
 
@@ -73,11 +74,6 @@ def _moved_to_centre(tensor: Matrix3, mass: float, centre: Vector3) -> Matrix3:
     """The tensor about the centre of mass from the one about the body's origin (Steiner)."""
     c = np.array(centre)
     return matrix3(np.array(tensor) - mass * (c @ c * np.eye(3) - np.outer(c, c)))
-
-
-def _check_planar(entry: Entry, tensor: Matrix3) -> None:
-    if tensor[2][2] < 0.0:
-        raise entry.fault("izz about the centre of mass not negative", _told(tensor[2][2], "izz"))
 
 
 def _checked_spatial(entry: Entry, tensor: Matrix3) -> Matrix3:
