@@ -57,7 +57,7 @@ class Described:
         sizes: NQ, NV, NU, NC, NW, NJ.
         coordinates: names and order.
         pose_text, rate_text, tau_text, wrench_text: contents of X, V, tau, wrench.
-        has_quaternion, is_constrained, is_redundant: features.
+        has_quaternion, is_constrained: features.
         legs: number of legs.
         is_numeric: some displacements are found by iteration; functions take q0.
         moves_base: the base moves; functions take its motion.
@@ -96,12 +96,6 @@ class Described:
     def actuation(self) -> Actuation:
         """What actuators and constraints determine."""
         return self.coordinates.actuation
-
-    @property
-    def is_redundant(self) -> bool:
-        """Whether the actuators can hold the mechanism in more than one way."""
-        found = self.sizes["NU"] + self.sizes["NC"] > self.actuation.rank
-        return found and not self.is_underactuated
 
     @property
     def is_underactuated(self) -> bool:

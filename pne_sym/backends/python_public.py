@@ -13,7 +13,7 @@ from pne_sym.backends.steps import described
 from pne_sym.derivation import AxisRelation
 from pne_sym.program.interpret import inputs_read
 from pne_sym.program.ir import Program
-from pne_sym.program.operations import ORTHONORMAL
+from pne_sym.program.pose_operations import ORTHONORMAL
 from pne_sym.program.public import Argument, Default, PublicFunction
 
 _CONSTANTS = ("ACTUATED", "ACTUATOR_NAMES", "HOME_Q", "HOME_X")

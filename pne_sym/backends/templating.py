@@ -13,7 +13,9 @@ import jinja2
 from pne_sym.model.body import RELATIVE
 from pne_sym.model.coupling import LEAST
 from pne_sym.model.values import LARGEST, ROUNDING, SNAP
-from pne_sym.program import distribution, interpret, iteration, linear, operations
+from pne_sym.program import distribution, interpret, iteration, linear
+from pne_sym.program.array_operations import TINY
+from pne_sym.program.pose_operations import ORTHONORMAL
 
 LIMITS = {
     "largest": f"{LARGEST:g}",
@@ -25,8 +27,8 @@ LIMITS = {
 """What the reader of specifications allows, for the checks of parameters at run time."""
 FIXED = {
     "pivot": linear.PIVOT,
-    "orthonormal": operations.ORTHONORMAL,
-    "tiny": operations.TINY,
+    "orthonormal": ORTHONORMAL,
+    "tiny": TINY,
     "turns": distribution.TURNS,
     "steps": iteration.STEPS,
     "longest": iteration.LONGEST,

@@ -18,7 +18,7 @@ from pne_sym.cli import drawing, homes, listing, review, starter
 from pne_sym.cli.arguments import COMMANDS, GENERATE
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import DIFFERENT, told
-from pne_sym.cli.options import Debug
+from pne_sym.cli.options import Debug, unset
 
 if TYPE_CHECKING:
     from pne_sym.model.manipulator import Manipulator
@@ -199,11 +199,9 @@ def check(
     out: Out = DEFAULT_OUT,
     target: Annotated[
         str | None,
-        typer.Option(
-            "--target",
-            metavar="NAMES",
-            show_default=False,
-            help="What code should stand there, as for generating. "
+        unset(
+            "--target NAMES",
+            "What code should stand there, as for generating. "
             "Default: what each folder was generated with, as its manifest says.",
         ),
     ] = None,

@@ -9,30 +9,25 @@ import typer
 
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import told
-from pne_sym.cli.numbers import numbers, table
-from pne_sym.cli.options import Debug, Source
+from pne_sym.cli.numbers import table
+from pne_sym.cli.options import Debug, Quiet, Source, of_option, unset
 
 if TYPE_CHECKING:
     from pne_sym.model.manipulator import Manipulator
 
 Out = Annotated[
     Path | None,
-    typer.Option(
-        "--out",
-        "-o",
-        metavar="FILE",
-        show_default=False,
-        help="The picture: .svg, .png or .pdf; with --path .gif, or .mp4 where ffmpeg is "
+    unset(
+        "--out -o FILE",
+        "The picture: .svg, .png or .pdf; with --path .gif, or .mp4 where ffmpeg is "
         "installed. Default: NAME.svg, NAME.gif.",
     ),
 ]
 Pose = Annotated[
     str | None,
-    typer.Option(
-        "--pose",
-        metavar="NUMBERS",
-        show_default=False,
-        help="The platform's pose, numbers with commas between (m, rad): x,y,z,roll,pitch,yaw "
+    unset(
+        "--pose NUMBERS",
+        "The platform's pose, numbers with commas between (m, rad): x,y,z,roll,pitch,yaw "
         "(fixed axes) or X itself, x,y,z,qx,qy,qz,qw; in the plane x,y,phi or x,y; without "
         "rotation x,y,z; about a centre roll,pitch,yaw or the quaternion. Then the extra "
         "coordinates, if there are any. Default: home.",
@@ -40,21 +35,17 @@ Pose = Annotated[
 ]
 Displacements = Annotated[
     str | None,
-    typer.Option(
-        "--q",
-        metavar="NUMBERS",
-        show_default=False,
-        help="Displacements of all joints, legs as in the spec and joints from the base, from "
+    unset(
+        "--q NUMBERS",
+        "Displacements of all joints, legs as in the spec and joints from the base, from "
         "which the legs are closed at the pose. Default: found along the straight way from home.",
     ),
 ]
 Poses = Annotated[
     Path | None,
-    typer.Option(
-        "--path",
-        metavar="FILE.csv",
-        show_default=False,
-        help="Animate: a frame for each line, which holds the numbers of a pose as for --pose. "
+    unset(
+        "--path FILE.csv",
+        "Animate: a frame for each line, which holds the numbers of a pose as for --pose. "
         "A first line of names and lines that begin with # are left out.",
     ),
 ]
@@ -63,21 +54,17 @@ Fps = Annotated[
 ]
 Azimuth = Annotated[
     float | None,
-    typer.Option(
-        "--azimuth",
-        metavar="DEGREES",
-        show_default=False,
-        help="Where to look from, counted from x towards y. Default: where the legs "
+    unset(
+        "--azimuth DEGREES",
+        "Where to look from, counted from x towards y. Default: where the legs "
         "hide each other least. Not in the plane.",
     ),
 ]
 Elevation = Annotated[
     float | None,
-    typer.Option(
-        "--elevation",
-        metavar="DEGREES",
-        show_default=False,
-        help="How far above the horizon to look from. Default: 20.",
+    unset(
+        "--elevation DEGREES",
+        "How far above the horizon to look from. Default: 20.",
     ),
 ]
 
@@ -91,7 +78,7 @@ def draw(  # noqa: PLR0913, PLR0917 - an option each
     fps: Fps = 25,
     azimuth: Azimuth = None,
     elevation: Elevation = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Tell only warnings.")] = False,
+    quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Draw a manipulator: a picture at a pose, or an animation of a path.
@@ -106,11 +93,11 @@ def draw(  # noqa: PLR0913, PLR0917 - an option each
         if pose is not None and path is not None:
             raise InputError("--pose and --path exclude each other")
         manipulator, report = find(source), Report(quiet=quiet)
-        guess = None if q is None else _numbers("--q", q)
+        guess = None if q is None else of_option("--q", q)
         target = out or Path(f"{manipulator.name}.{'svg' if path is None else 'gif'}")
         look = {"azimuth": azimuth, "elevation": elevation}
         if path is None:
-            X = None if pose is None else _numbers("--pose", pose, manipulator)
+            X = None if pose is None else of_option("--pose", pose, manipulator)
             drawing.draw(manipulator, target, X, guess, **look)
         else:
             drawing.check_film(target, fps)
@@ -123,18 +110,6 @@ def draw(  # noqa: PLR0913, PLR0917 - an option each
                 step.working_on(f"{manipulator.name}: frames")
                 drawing.save_film(frames, target, fps, step.done)
         report.line(f"wrote {target}: {target.stat().st_size / 1000:.0f} kB")
-
-
-def _numbers(option: str, text: str, pose_of: Manipulator | None = None) -> list[float]:
-    """The numbers of an option; of a pose, X."""
-    from pne_sym import drawing
-    from pne_sym.generation import InputError
-
-    try:
-        found = numbers(text)
-        return found if pose_of is None else drawing.pose_of(pose_of, found)
-    except ValueError as error:  # an InputError is one too
-        raise InputError(f"{option}: {error}") from error
 
 
 def _poses(manipulator: Manipulator, path: Path) -> list[list[float]]:

@@ -34,7 +34,7 @@ def _closures(m: Manipulator) -> Iterator[str]:
     from pne_sym.model.home import principal
     from pne_sym.model.loops import Loops
 
-    loops = Loops(m.space, m.legs, m.fixed_centre)
+    loops = Loops.of(m)
     yield f"{m.name}: X = {_listed(m.home.X)}"
     found = all_closures(loops, np.array(m.home.X))
     for k, (leg, s, own) in enumerate(zip(m.legs, loops.slices(), found, strict=True)):

@@ -9,7 +9,6 @@ from pne_sym.generation import InputError
 from pne_sym.model.errors import show
 
 _BETWEEN = re.compile(r"[\s,;]+")
-_LARGEST = 4 * 1024 * 1024
 
 
 def numbers(text: str) -> list[float]:
@@ -33,11 +32,14 @@ def table(path: Path) -> list[tuple[int, list[float]]]:
     Blank lines and those that begin with # are left out, as is a first line of names.
 
     Raises:
-        InputError: the file cannot be read, or a line has what is no number.
+        SpecError: the file cannot be read.
+        InputError: a line has what is no number.
     """
+    from pne_sym.model.files import bounded_text
+
     rows: list[tuple[int, list[float]]] = []
     names = False
-    for number, line in enumerate(_text(path).splitlines(), start=1):
+    for number, line in enumerate(bounded_text(path).splitlines(), start=1):
         content = line.partition("#")[0].strip()
         if not content:
             continue
@@ -53,18 +55,3 @@ def table(path: Path) -> list[tuple[int, list[float]]]:
 def _is_heading(line: str) -> bool:
     """Whether a line holds names only."""
     return all(re.fullmatch(r'["\']?[A-Za-z_]\w*["\']?', piece) for piece in _BETWEEN.split(line))
-
-
-def _text(path: Path) -> str:
-    try:
-        with path.open("rb") as stream:
-            content = stream.read(_LARGEST + 1)
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"cannot read {path}: {reason}") from None
-    if len(content) > _LARGEST:
-        raise InputError(f"{path}: file too large; at most {_LARGEST} bytes")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: byte {error.start} is not UTF-8") from None

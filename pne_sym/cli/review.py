@@ -10,7 +10,7 @@ import typer
 from pne_sym.backends import registry
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import DIFFERENT, told
-from pne_sym.cli.options import Debug
+from pne_sym.cli.options import Debug, unset
 from pne_sym.cli.options import Source as Specification
 
 if TYPE_CHECKING:
@@ -19,31 +19,33 @@ if TYPE_CHECKING:
     from pne_sym.review.sources import Source
 
 
+Equation = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="EQUATION",
+        show_default=False,
+        help="Its id, such as ups-root_1, or the name it defines. Default: list all.",
+    ),
+]
+Stage = Annotated[
+    str | None,
+    unset(
+        "--stage STAGE",
+        "spec: the specification's full form (JSON). derivation: the equation. "
+        f"{', '.join(registry.stages()[2:])}: its statements. "
+        "Default: the equation and the program's.",
+    ),
+]
+Transitively = Annotated[
+    bool, typer.Option("--all", "-a", help="Follow what it uses and what uses it to the end.")
+]
+
+
 def explain(
     source: Specification,
-    equation: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="EQUATION",
-            show_default=False,
-            help="Its id, such as ups-root_1, or the name it defines. Default: list all.",
-        ),
-    ] = None,
-    stage: Annotated[
-        str | None,
-        typer.Option(
-            "--stage",
-            metavar="STAGE",
-            show_default=False,
-            help="spec: the specification's full form (JSON). derivation: the equation. "
-            f"{', '.join(registry.stages()[2:])}: its statements. "
-            "Default: the equation and the program's.",
-        ),
-    ] = None,
-    transitively: Annotated[
-        bool,
-        typer.Option("--all", "-a", help="Follow what it uses and what uses it to the end."),
-    ] = False,
+    equation: Equation = None,
+    stage: Stage = None,
+    transitively: Transitively = False,
     debug: Debug = False,
 ) -> None:
     """Explain an equation of a derivation.
@@ -82,39 +84,47 @@ _VERSION = (
 )
 
 
+Before = Annotated[str, typer.Argument(metavar="A", help=_VERSION)]
+After = Annotated[str, typer.Argument(metavar="B", help="Likewise.")]
+Json = Annotated[bool, typer.Option("--json", help="Answer in JSON.")]
+Markdown = Annotated[
+    bool, typer.Option("--markdown", help="Answer in Markdown, for a pull request.")
+]
+Tolerance = Annotated[
+    float,
+    typer.Option("--tolerance", min=0.0, help="Relative; values nearer than this are equal."),
+]
+Run = Annotated[
+    bool,
+    typer.Option(
+        "--run",
+        help="Execute the Python, and compile and execute the C, of folders: only of those "
+        "whose code you would run.",
+    ),
+]
+WithC = Annotated[
+    bool, typer.Option("--c/--no-c", help="With --run: compile and execute the C too.")
+]
+Label = Annotated[
+    str,
+    unset(
+        "--as PATH",
+        "What A and B are called: a/PATH, b/PATH. For git, which names temporary files.",
+    ),
+]
+Silent = Annotated[bool, typer.Option("--quiet", "-q", help="Tell only by exit code.")]
+
+
 def diff(  # noqa: PLR0913, PLR0917 - one option each
-    before: Annotated[str, typer.Argument(metavar="A", help=_VERSION)],
-    after: Annotated[str, typer.Argument(metavar="B", help="Likewise.")],
-    as_json: Annotated[bool, typer.Option("--json", help="Answer in JSON.")] = False,
-    as_markdown: Annotated[
-        bool, typer.Option("--markdown", help="Answer in Markdown, for a pull request.")
-    ] = False,
-    tolerance: Annotated[
-        float,
-        typer.Option("--tolerance", min=0.0, help="Relative; values nearer than this are equal."),
-    ] = 1e-9,
-    run: Annotated[
-        bool,
-        typer.Option(
-            "--run",
-            help="Execute the Python, and compile and execute the C, of folders: only of those "
-            "whose code you would run.",
-        ),
-    ] = False,
-    c: Annotated[
-        bool,
-        typer.Option("--c/--no-c", help="With --run: compile and execute the C too."),
-    ] = True,
-    label: Annotated[
-        str,
-        typer.Option(
-            "--as",
-            metavar="PATH",
-            show_default=False,
-            help="What A and B are called: a/PATH, b/PATH. For git, which names temporary files.",
-        ),
-    ] = "",
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Tell only by exit code.")] = False,
+    before: Before,
+    after: After,
+    as_json: Json = False,
+    as_markdown: Markdown = False,
+    tolerance: Tolerance = 1e-9,
+    run: Run = False,
+    c: WithC = True,
+    label: Label = "",
+    quiet: Silent = False,
     debug: Debug = False,
 ) -> None:
     """Compare two versions of a model by meaning.

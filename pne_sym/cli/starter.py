@@ -10,8 +10,7 @@ import typer
 
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import told
-from pne_sym.cli.numbers import numbers
-from pne_sym.cli.options import Debug
+from pne_sym.cli.options import Debug, Quiet, of_option, unset
 
 if TYPE_CHECKING:
     from pne_sym.starter.points import Geometry
@@ -19,89 +18,80 @@ if TYPE_CHECKING:
 
 Points = Annotated[
     Path | None,
-    typer.Option(
-        "--points",
-        metavar="FILE.csv",
-        show_default=False,
-        help="Joint points (m), a row for each leg: base point in the base frame, platform point "
+    unset(
+        "--points FILE.csv",
+        "Joint points (m), a row for each leg: base point in the base frame, platform point "
         "in the platform frame; x,y,z,x,y,z, in the plane x,y,x,y.",
     ),
 ]
 Radii = Annotated[
     str | None,
-    typer.Option(
-        "--radii",
-        metavar="BASE,PLATFORM",
-        show_default=False,
-        help="Joint points on two circles of these radii (m), at --base-angles and "
-        "--platform-angles.",
+    unset(
+        "--radii BASE,PLATFORM",
+        "Joint points on two circles of these radii (m), at --base-angles and --platform-angles.",
     ),
 ]
 BaseAngles = Annotated[
     str | None,
-    typer.Option(
-        "--base-angles",
-        metavar="NUMBERS",
-        show_default=False,
-        help="With --radii: an angle (degrees) for each leg's base point.",
+    unset(
+        "--base-angles NUMBERS",
+        "With --radii: an angle (degrees) for each leg's base point.",
     ),
 ]
 PlatformAngles = Annotated[
     str | None,
-    typer.Option(
-        "--platform-angles",
-        metavar="NUMBERS",
-        show_default=False,
-        help="The same for the platform points. Default: those of the base.",
+    unset(
+        "--platform-angles NUMBERS",
+        "The same for the platform points. Default: those of the base.",
     ),
 ]
 Height = Annotated[
     float | None,
-    typer.Option(
-        "--height",
-        metavar="METRES",
-        show_default=False,
-        help="With --points or --radii in space: the platform's origin above the base's at home.",
+    unset(
+        "--height METRES",
+        "With --points or --radii in space: the platform's origin above the base's at home.",
     ),
 ]
 
 
+Target = Annotated[
+    Path,
+    typer.Argument(
+        metavar="FILE.toml", help="The specification to be written; its name is the model's."
+    ),
+]
+Legs = Annotated[
+    str,
+    typer.Option(
+        "--legs",
+        metavar="LEGS",
+        help="The architecture, such as 6-UPS or 2-RPR+1-RRR: count, joints from the base, "
+        "platform joint. _ marks an actuated joint (6-U_PS), * an extra coordinate. "
+        "Without marks, actuators are chosen.",
+    ),
+]
+Space = Annotated[
+    str | None,
+    unset(
+        "--space SPACE",
+        "point, planar, spatial, translational or spherical. "
+        "Default: planar where the legs can move in the plane, else spatial.",
+    ),
+]
+Force = Annotated[bool, typer.Option("--force", "-f", help="Replace a file that stands there.")]
+
+
 def new(  # noqa: PLR0913, PLR0917 - an option each
-    path: Annotated[
-        Path,
-        typer.Argument(
-            metavar="FILE.toml", help="The specification to be written; its name is the model's."
-        ),
-    ],
-    legs: Annotated[
-        str,
-        typer.Option(
-            "--legs",
-            metavar="LEGS",
-            help="The architecture, such as 6-UPS or 2-RPR+1-RRR: count, joints from the base, "
-            "platform joint. _ marks an actuated joint (6-U_PS), * an extra coordinate. "
-            "Without marks, actuators are chosen.",
-        ),
-    ],
-    space: Annotated[
-        str | None,
-        typer.Option(
-            "--space",
-            metavar="SPACE",
-            show_default=False,
-            help="point, planar, spatial, translational or spherical. "
-            "Default: planar where the legs can move in the plane, else spatial.",
-        ),
-    ] = None,
+    path: Target,
+    legs: Legs,
+    space: Space = None,
     points: Points = None,
     radii: Radii = None,
     base_angles: BaseAngles = None,
     platform_angles: PlatformAngles = None,
     height: Height = None,
-    force: Annotated[
-        bool, typer.Option("--force", "-f", help="Replace a file that stands there.")
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Tell only warnings.")] = False,
+    force: Force = False,
+    quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Write a first specification of your own manipulator.
@@ -141,15 +131,6 @@ def _geometry(
         return None
     if base is None:
         raise InputError("--radii needs --base-angles, an angle for each leg")
-    angles = _numbers("--base-angles", base)
-    others = angles if platform is None else _numbers("--platform-angles", platform)
-    return Rings(_numbers("--radii", radii), angles, others, height)
-
-
-def _numbers(option: str, text: str) -> list[float]:
-    from pne_sym.generation import InputError
-
-    try:
-        return numbers(text)
-    except ValueError as error:
-        raise InputError(f"{option}: {error}") from error
+    angles = of_option("--base-angles", base)
+    others = angles if platform is None else of_option("--platform-angles", platform)
+    return Rings(of_option("--radii", radii), angles, others, height)

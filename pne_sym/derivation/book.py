@@ -117,28 +117,21 @@ class Book:
         """
         check_reference(reference, law)
         symbol, rhs = _defined(name, rhs, symmetric=symmetric)
-        role = facts.get("role")
-        try:
-            others = (*forms, like)
-            unit = unit_of_equation(rhs, others, conditions, self._units, law=law, role=role)
-        except DimensionError as error:
-            raise DimensionError(f"{name}: {error}") from None
+        steps = linear.steps if linear else ()
+        told = tuple(forms), steps, expanded, tuple(conditions)
+        equation = Equation(self._id(name), title, symbol, rhs, law, reference, *told)
+        unit = self._unit_of(equation, like, facts.get("role"))
         self.note_quantity(Quantity(name, latex, title, unit, **facts))
-        self._chapters[-1][-1].append(
-            Equation(
-                id=self._id(name),
-                title=title,
-                lhs=symbol,
-                rhs=rhs,
-                law=law,
-                reference=reference,
-                forms=tuple(forms),
-                steps=linear.steps if linear else (),
-                expanded=expanded,
-                conditions=tuple(conditions),
-            )
-        )
+        self._chapters[-1][-1].append(equation)
         return symbol
+
+    def _unit_of(self, e: Equation, like: Any, role: Role | None) -> str:
+        """The unit of what an equation defines."""
+        others = (*e.forms, like)
+        try:
+            return unit_of_equation(e.rhs, others, e.conditions, self._units, law=e.law, role=role)
+        except DimensionError as error:
+            raise DimensionError(f"{e.name}: {error}") from None
 
     def measured(
         self, name: str, number: sp.Float, unit: str, latex: str, title: str, law: Law
@@ -260,11 +253,11 @@ class Book:
         """The finished derivation; equations that nothing needs are left out."""
         needed = self._needed()
         left_out = {e.name for e in self.all_equations()} - needed
-        chapters = []
-        for id_, title, leg_type, text, equations in self._chapters:
-            kept = tuple(e for e in equations if e.name in needed)
-            if kept:
-                chapters.append(Chapter(id_, title, leg_type, text, kept))
+        chapters = [
+            Chapter(id_, title, leg_type, text, kept)
+            for id_, title, leg_type, text, equations in self._chapters
+            if (kept := tuple(e for e in equations if e.name in needed))
+        ]
         return Derivation(
             tuple(chapters),
             dict(self.notation),

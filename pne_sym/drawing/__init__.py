@@ -175,8 +175,7 @@ def _check_angle(name: str, value: float | None) -> None:
 
 def _legend(manipulator: Manipulator) -> tuple[tuple[str, str, str], ...]:
     """What the colours that occur mean."""
-    joints = [joint for leg in manipulator.legs for joint in leg.joints]
-    rows = []
+    joints, rows = manipulator.joints, []
     if any(joint.actuated for joint in joints):
         rows.append((ACTUATED, OUTLINE, "actuated joint"))
     rows.append((JOINT, OUTLINE, "passive joint"))

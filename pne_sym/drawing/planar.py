@@ -26,7 +26,6 @@ from pne_sym.drawing.style import (
 
 Array = NDArray[np.float64]
 
-_TUBE_PART = 0.55
 _HATCHES = 6
 _ARROWS = (1.3, 1.0, 1.6, 0.7)
 """Lengths of the base frame's arrows to choose from: the first that ends beside no joint."""
@@ -125,8 +124,7 @@ def _beside(slide: Slide, leg: LegScene) -> Array:
 def _rail(slide: Slide, down: Array, sizes: Proportions) -> list[Shape]:
     """A rail on the ground."""
     r = sizes.joint
-    start, end = slide.start[:2], slide.end[:2]
-    sense = slide.axis[:2] if float((end - start) @ slide.axis[:2]) >= 0.0 else -slide.axis[:2]
+    start, end, sense = slide.start[:2], slide.end[:2], slide.outwards[:2]
     a, b = start - 2.5 * r * sense + 1.9 * r * down, end + 6.0 * r * sense + 1.9 * r * down
     return _hatching(a, b, down, r)
 
@@ -139,7 +137,7 @@ def _bar(part: Part, sizes: Proportions) -> list[Shape]:
     start, end = part.start[:2], part.end[:2]
     if isinstance(part, Bar):
         return [Shape(rounded(np.array([start, end]), 0.75 * r), LINK, OUTLINE, LINE)]
-    mouth = start + _TUBE_PART * (end - start)
+    mouth = part.mouth[:2]
     return [
         Shape(rounded(np.array([mouth, end]), 0.5 * r, 16), LINK, OUTLINE, LINE),
         Shape(strip(start, mouth, 1.05 * r), TUBE, OUTLINE, LINE),
@@ -162,9 +160,7 @@ def _joint(part: Part, sizes: Proportions) -> list[Shape]:
         return [
             Shape(strip(end - 2.6 * r * axis, end + 2.6 * r * axis, 1.9 * r), fill, edge, width)
         ]
-    start = part.start[:2]
-    mouth = start + _TUBE_PART * (end - start)
-    sense = axis if float((end - start) @ axis) >= 0.0 else -axis
+    mouth, sense = part.mouth[:2], part.outwards[:2]
     collar = strip(mouth - 2.8 * r * sense, mouth + 0.4 * r * sense, 1.5 * r)
     return [Shape(collar, fill, edge, width)]
 
@@ -222,11 +218,7 @@ def _number(number: int, leg: LegScene, sizes: Proportions) -> Label:
     first, r = leg.parts[0], sizes.joint
     if _on_rail(leg):
         assert isinstance(first, Slide)
-        sense = (
-            first.axis[:2]
-            if float((first.end - first.start) @ first.axis) >= 0
-            else -first.axis[:2]
-        )
+        sense = first.outwards[:2]
         point, side = first.start[:2] - 2.5 * r * sense + 2.4 * r * _beside(first, leg), -sense
     else:
         down = _down(leg)

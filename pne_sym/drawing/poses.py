@@ -13,7 +13,8 @@ from pne_sym.generation import InputError
 from pne_sym.mechanics.mobility import mobility
 from pne_sym.model.kinematics import TASK_SPACES
 from pne_sym.model.loops import Loops, legs_closed
-from pne_sym.model.manipulator import Manipulator, Space, Vector3
+from pne_sym.model.manipulator import Manipulator, Space
+from pne_sym.program.operations import OPERATIONS
 
 Array = NDArray[np.float64]
 
@@ -65,9 +66,9 @@ def pose_of(manipulator: Manipulator, numbers: Sequence[float]) -> list[float]:
     if form is names:
         return list(numbers)
     start = len(form) - len(_ANGLES)
-    roll, pitch, yaw = numbers[start : len(form)]
-    turned = _quaternion((roll, pitch, yaw))
-    return [*numbers[:start], *turned, *numbers[len(form) :]]
+    rpy = np.array([numbers[start : len(form)]])
+    (quaternion,) = OPERATIONS["quaternion_of_rpy"]((rpy,), ())
+    return [*numbers[:start], *quaternion[0].tolist(), *numbers[len(form) :]]
 
 
 def closed(
@@ -89,7 +90,7 @@ def closed(
     """
     if X is None and q is None:
         return start or at_home(manipulator)
-    loops = Loops(manipulator.space, manipulator.legs, manipulator.fixed_centre)
+    loops = Loops.of(manipulator)
     goal = _coordinates(manipulator, manipulator.home.X if X is None else X)
     if q is not None:
         _check_length("q", q, len(manipulator.home.q))
@@ -150,18 +151,6 @@ def _coordinates(manipulator: Manipulator, X: Sequence[float]) -> Array:
         turn /= largest
         turn /= np.linalg.norm(turn)
     return result
-
-
-def _quaternion(rpy: Vector3) -> tuple[float, ...]:
-    """The unit quaternion (x, y, z, w) of roll, pitch, yaw about the fixed axes x, y, z."""
-    half = [0.5 * angle for angle in rpy]
-    (cr, cp, cy), (sr, sp, sy) = map(math.cos, half), map(math.sin, half)
-    return (
-        sr * cp * cy - cr * sp * sy,
-        cr * sp * cy + sr * cp * sy,
-        cr * cp * sy - sr * sp * cy,
-        cr * cp * cy + sr * sp * sy,
-    )
 
 
 def _constrained(manipulator: Manipulator) -> str:

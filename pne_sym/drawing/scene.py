@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 
 SAME = 1e-6
 """Points nearer than this part of the mechanism's size are one point."""
+_TUBE_PART = 0.55
+"""How much of a slide its tube covers."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,16 @@ class Slide:
     extra: bool
     helical: bool
     grounded: bool
+
+    @property
+    def outwards(self) -> Array:
+        """The axis, in the sense in which it is extended."""
+        return self.axis if float((self.end - self.start) @ self.axis) >= 0.0 else -self.axis
+
+    @property
+    def mouth(self) -> Array:
+        """Where the rod leaves the tube."""
+        return self.start + _TUBE_PART * (self.end - self.start)
 
 
 @dataclass(frozen=True)
@@ -121,7 +133,7 @@ def scene_of(manipulator: Manipulator, X: Sequence[float], q: Sequence[float]) -
     """The scene at a pose that closes the loops."""
     m = manipulator
     pose = pose_at(m.space, X[: len(TASK_SPACES[m.space].pose_names)], m.fixed_centre)
-    slices = Loops(m.space, m.legs, m.fixed_centre).slices()
+    slices = Loops.of(m).slices()
     planar = m.space in (Space.POINT, Space.PLANAR)
     anchors = np.array([pose.t + pose.R @ np.array(leg.platform_point) for leg in m.legs])
     raw = [_walk(leg, q[s], pose.R, planar=planar) for leg, s in zip(m.legs, slices, strict=True)]

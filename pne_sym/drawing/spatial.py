@@ -28,7 +28,6 @@ from pne_sym.model.kind import Look
 Array = NDArray[np.float64]
 
 _THREADS = 11
-_TUBE_PART = 0.55
 _CROWDED = 8.0
 
 
@@ -138,9 +137,8 @@ class _Leg:
     def _strut(self, slide: Slide) -> list[Solid]:
         """A tube and the rod in it; the actuator is the collar at the tube's mouth."""
         r, view = self.sizes.joint, self.view
-        mouth = slide.start + _TUBE_PART * (slide.end - slide.start)
+        mouth, step = slide.mouth, slide.outwards
         fill, edge, width = joint_colours(actuated=slide.actuated, extra=slide.extra)
-        step = slide.axis if float((slide.end - slide.start) @ slide.axis) >= 0.0 else -slide.axis
         collar = cylinder(
             view,
             mouth - 2.6 * r * step,

@@ -23,7 +23,8 @@ from pne_sym.model.closure import leg_residual, unreachable
 from pne_sym.model.errors import SpecError
 from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at, rotation_about
 from pne_sym.model.loops import Loops, all_closed
-from pne_sym.model.manipulator import Home, Joint, Leg, Manipulator, Matrix3, Space, Vector3
+from pne_sym.model.manipulator import Home, Joint, Leg, Manipulator, Space, Vector3
+from pne_sym.model.rotation import matrix3, vector3
 
 _POSES = 2
 """Poses beside home, and with each other geometry."""
@@ -99,7 +100,7 @@ def _force_rank(m: Manipulator) -> int:
     Rates of the joints of such a leg at a velocity that its constraints do not allow are a matter
     of choice: any left inverse of the leg's Jacobian will do, so one is drawn.
     """
-    loops, rng = Loops(m.space, m.legs, m.fixed_centre), np.random.default_rng(0)
+    loops, rng = Loops.of(m), np.random.default_rng(0)
     pose, twist = pose_at(m.space, m.home.X, m.fixed_centre), TASK_SPACES[m.space].components
     q, extras = np.array(m.home.q), np.cumsum([0, *loops.extra])
     columns = []
@@ -154,7 +155,7 @@ def _size(m: Manipulator) -> float:
 
 def _closed(m: Manipulator, X: Array, q: Array) -> Manipulator | None:
     """The manipulator with its home at the closure next to these coordinates; None if none."""
-    loops = Loops(m.space, m.legs, m.fixed_centre)
+    loops = Loops.of(m)
     X, q = all_closed(loops, X, q)
     if not max(loops.residuals(X, q)) < _CLOSED * max(1.0, _size(m)):
         return None
@@ -166,7 +167,7 @@ def elsewhere(m: Manipulator, rng: np.random.Generator) -> Manipulator | None:
     """The same mechanism moved a random way along its degrees of freedom."""
     motions, twist = motions_at_home(m), len(TASK_SPACES[m.space].components)
     step = motions @ rng.uniform(-1.0, 1.0, motions.shape[1])
-    loops, space = Loops(m.space, m.legs, m.fixed_centre), TASK_SPACES[m.space]
+    loops, space = Loops.of(m), TASK_SPACES[m.space]
     shifts = [k < 3 for k in space.components] + [not joint.kind.is_angle for joint in loops.joints]
     sizes = np.where(shifts, _SHIFT * _size(m), _TURN)
     step /= float(np.max(np.abs(step) / sizes))
@@ -222,13 +223,13 @@ def _changed(
 
     def moved(point: Vector3) -> Vector3:
         shift = _CHANGE * size * rng.uniform(-1.0, 1.0, 3) * (1.0, 1.0, 0.0 if planar else 1.0)
-        return _vector(np.array(point) + shift)
+        return vector3(np.array(point) + shift)
 
     def factor() -> float:
         return 1.0 + _CHANGE * float(rng.uniform(-1.0, 1.0))
 
     def scaled(vector: Vector3) -> Vector3:
-        return _vector(np.array(vector) * factor())
+        return vector3(np.array(vector) * factor())
 
     def joint(old: Joint) -> Joint:
         return replace(old, offset=scaled(old.offset), pitch=old.pitch * factor())
@@ -240,7 +241,7 @@ def _changed(
             leg,
             joints=tuple(joint(each) for each in leg.joints),
             base_point=moved(leg.base_point) if points else leg.base_point,
-            base_frame=_matrix(_turn(rng, planar=planar) @ frame) if frames else leg.base_frame,
+            base_frame=matrix3(_turn(rng, planar=planar) @ frame) if frames else leg.base_frame,
             platform_joint=replace(end, offset=scaled(end.offset)),
             platform_point=leg.platform_point if seated else moved(leg.platform_point),
         )
@@ -251,13 +252,3 @@ def _changed(
 def _turn(rng: np.random.Generator, *, planar: bool) -> Array:
     axis = np.array([0.0, 0.0, 1.0]) if planar else rng.normal(size=3)
     return rotation_about(axis / np.linalg.norm(axis), _CHANGE * float(rng.uniform(-1.0, 1.0)))
-
-
-def _vector(values: Array) -> Vector3:
-    x, y, z = map(float, values)
-    return x, y, z
-
-
-def _matrix(values: Array) -> Matrix3:
-    x, y, z = (_vector(row) for row in values)
-    return x, y, z

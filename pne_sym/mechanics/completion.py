@@ -122,7 +122,8 @@ def completion_at_home(manipulator: Manipulator, g: LegGeometry) -> tuple[Auxili
     best = 0.0
     chosen: tuple[Auxiliary, ...] = ()
     for first, second in choices:
-        quality = min(_quality(s, (*first, *second)) for s in home)
+        columns = (_columns(s, (*first, *second)) for s in home)
+        quality = min(float(np.linalg.svd(own)[1][-1]) for own in columns)
         if quality > _BETTER * best:
             best, chosen = quality, (*first, *second)
     return tuple(
@@ -153,10 +154,6 @@ def _columns(state: _State, chosen: Sequence[Auxiliary]) -> Array:
     }
     columns = [own[a.kind][:, a.number] for a in chosen]
     return np.column_stack([*columns, state.dofs])
-
-
-def _quality(state: _State, chosen: Sequence[Auxiliary]) -> float:
-    return float(np.linalg.svd(_columns(state, chosen))[1][-1])
 
 
 def _has_force(states: list[_State], chosen: Sequence[Auxiliary], k: int) -> bool:

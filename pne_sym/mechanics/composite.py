@@ -77,7 +77,7 @@ class CompositeWriter:
             for j in range(k, 0, -1):
                 if j < k and g.group[j] != g.group[j + 1]:
                     moment = self._carried(k, g.group[j], force, moment)
-                entry = self._along(j, force, moment)
+                entry = Dot(g.spin(j), moment) + Dot(g.slide(j), force)
                 if entry == 0:
                     continue
                 stem = "D_#_%" if j < k else "D_#_%:own"
@@ -147,6 +147,3 @@ class CompositeWriter:
             return ZeroVector
         total = vector_sum((moment, Cross(self.chain.spans[group], force)))
         return self.eq.named("L_c_#_%", total, k, group, body=self.g.frame("axes", group))
-
-    def _along(self, j: int, force: Any, moment: Any) -> Any:
-        return Dot(self.g.spin(j), moment) + Dot(self.g.slide(j), force)

@@ -106,14 +106,13 @@ class Invariants:
 
     def _across_slide(self, j: int, p: int) -> tuple[str, Vector, Any] | None:
         g = self.g
+        if g.parallel(j, p):
+            return None
+        u: Vector = g.e[j]
         if not g.acts_as_slide(j):
-            if g.parallel(j, p):
-                return None
-            u: Vector = Cross(g.e[j], g.e[p])
-        else:
-            if g.parallel(j, p):
-                return None
-            u = g.e[j] if g.perpendicular(j, p) else g.e[j] - Dot(g.e[j], g.e[p]) * g.e[p]
+            u = Cross(u, g.e[p])
+        elif not g.perpendicular(j, p):
+            u = u - Dot(u, g.e[p]) * g.e[p]
         constant = sp.Add(
             *(Dot(u, g.offset[i]) for i in range(j + 1, g.count + 2) if not self._lies_along(i, j)),
             *(y * Dot(u, axis) for y, axis in self.extra_slides(j)),

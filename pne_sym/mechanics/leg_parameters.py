@@ -80,15 +80,12 @@ class LegParameters:
             return stem
         return stem.replace("joint#", self.type.part("joint", numbers[0]))
 
-    def _turned(self) -> Rule:
-        """What a frame must be."""
-        return Rule.PLANAR_ROTATION if self.planar else Rule.ROTATION
-
     def points(self) -> None:
         """Base point, platform point, leg axes."""
         flat = (2,) if self.planar else ()
         b = self.field("base_point", zeros=flat)
-        frame = self.field("base_frame", rule=self._turned())
+        rule = Rule.PLANAR_ROTATION if self.planar else Rule.ROTATION
+        frame = self.field("base_frame", rule=rule)
         p = self.field("platform_point", zeros=flat)
         if self.planar:  # legs of the plane keep z along the plane's normal
             frame = (*frame[:2], 0, *frame[3:5], 0, 0, 0, 1)

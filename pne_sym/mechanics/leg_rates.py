@@ -164,10 +164,9 @@ class RateWriter:
             qd=qd,
             omega=omega,
             spin=spin,
-            slide={group: self._sliding(group, qd) for group in self.chain.spans},
+            slide={
+                group: vector_sum(qd[j] * g.slide(j) for j in self.chain.slides(group))
+                for group in self.chain.spans
+            },
             end_turning=self.p.omega - omega[self.chain.last],
         )
-
-    def _sliding(self, group: int, qd: dict[int, Any]) -> Vector:
-        """Velocity of sliding within a group."""
-        return vector_sum(qd[j] * self.g.slide(j) for j in self.chain.slides(group))

@@ -88,26 +88,42 @@ class LinearWriter(Writer):
             unknown: self._coefficient(unknown, form, term, rhs, stem=stem, body=body)
             for unknown in form.coefficients
         }
-        remainder = form.remainder
-        if not (isinstance(remainder, VectorSymbol | sp.Symbol) or remainder in (ZeroVector, 0)):
-            remainder = self.book.define(
-                self._name(f"{stem}_o"),
-                remainder,
-                f"{term.latex}^{{\\circ}}",
-                f"remainder of: {term.meaning}",
-                Law.RULES,
-                body=body,
-                forms=rest_forms,
-                expanded=rhs,
-                reference="Sec. 2.3, Eq. 4",
-                remainder_of=symbol.name,
-            )
+        remainder = self._remainder(
+            form.remainder, symbol, term, rhs, rest_forms, stem=stem, body=body
+        )
         motion.known[symbol] = LinearForm(coefficients, remainder)
         if collected:
             self.book.collect(symbol.name, motion.known[symbol], form)
         else:
             self.book.collect_no_coefficients(symbol.name)
         return symbol
+
+    def _remainder(
+        self,
+        value: Any,
+        symbol: Any,
+        term: Term,
+        rhs: Any,
+        forms: Sequence[Any],
+        *,
+        stem: str,
+        body: str | None,
+    ) -> Any:
+        """The remainder of a form: by its name if it has one, else defined."""
+        if isinstance(value, VectorSymbol | sp.Symbol) or value in (ZeroVector, 0):
+            return value
+        return self.book.define(
+            self._name(f"{stem}_o"),
+            value,
+            f"{term.latex}^{{\\circ}}",
+            f"remainder of: {term.meaning}",
+            Law.RULES,
+            body=body,
+            forms=forms,
+            expanded=rhs,
+            reference="Sec. 2.3, Eq. 4",
+            remainder_of=symbol.name,
+        )
 
     def _mark(self, unknown: Any) -> str:
         """How a coefficient's symbol names its unknown: y_3 for an extra coordinate, else alpha."""

@@ -239,7 +239,7 @@ def _closure(manipulator: Manipulator) -> tuple[Array, tuple[int, ...], tuple[in
 def _legs(manipulator: Manipulator) -> Iterator[tuple[Array, Array, Array, Array]]:
     """A leg's closure by rates of all its joints, of those not extra, of the extra ones, of X."""
     m = manipulator
-    loops = Loops(m.space, m.legs, m.fixed_centre)
+    loops = Loops.of(m)
     pose = pose_at(m.space, m.home.X, m.fixed_centre)
     twist, q = TASK_SPACES[m.space].components, np.array(m.home.q)
     for leg, s in zip(m.legs, loops.slices(), strict=True):

@@ -48,7 +48,8 @@ def orientation_rows(
         return ()
     best, chosen = 0.0, tuple[int, ...]()
     for choice in combinations(rows, joints):
-        quality = min(_smallest(found[0][list(choice)]) for found in legs)
+        chosen_rows = (found[0][list(choice)] for found in legs)
+        quality = min(float(np.linalg.svd(m, compute_uv=False)[-1]) for m in chosen_rows)
         if quality > _BETTER * best:
             best, chosen = quality, choice
     return chosen
@@ -66,7 +67,3 @@ def _is_same_span(states: list[Array]) -> bool:
     """Whether the columns span the same space at all states."""
     basis = np.linalg.qr(states[0])[0]
     return all(np.abs(s - basis @ (basis.T @ s)).max(initial=0.0) < _SAME for s in states)
-
-
-def _smallest(matrix: Array) -> float:
-    return float(np.linalg.svd(matrix, compute_uv=False)[-1])

@@ -125,7 +125,8 @@ def completed_wrenches(
             g.leg_type.name,
             tuple(vectors),
             tuple(force for force, _ in parts),
-            (*(_column_size(g, a) for a in chosen), *dofs.scales),
+            # Turns move points by lengths.
+            (*(sp.S.One if a.kind is Kind.SLIDE else g.size for a in chosen), *dofs.scales),
             tuple(frames),
             tuple(tuple(row) for row in rows),
             tuple(coefficients for _, coefficients in parts),
@@ -148,11 +149,6 @@ def _column(
     eq = Writer(book, g, _TERMS)
     velocity = eq("t_c#", Cross(a, g.platform_point), number + 1, body=dofs.frame)
     return velocity, [Dot(a, n) for n in dofs.directions]
-
-
-def _column_size(g: LegGeometry, auxiliary: Auxiliary) -> Any:
-    """What the column of an auxiliary direction is measured by: turns move points by lengths."""
-    return sp.S.One if auxiliary.kind is Kind.SLIDE else g.size
 
 
 def direction(book: Book, g: LegGeometry, axis: int, frame: str) -> VectorSymbol:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import warnings
 
 import numpy as np
-import numpy.typing as npt
 
 from pne_sym.model.entry import Entry
 from pne_sym.model.errors import SpecWarning
 from pne_sym.model.manipulator import ZERO3, ZERO33, Body, Matrix3, Vector3
+from pne_sym.model.rotation import matrix3
 from pne_sym.model.values import matrix, not_negative, number, numbers, vector
 
 FIELDS = ("mass", "centre_of_mass", "inertia", "inertia_about")
@@ -47,7 +47,8 @@ def read_body(entry: Entry, *, plane: bool, also: tuple[str, ...] = ()) -> Body:
     if about and about.choice(("centre_of_mass", "origin")) == "origin":
         tensor = _moved_to_centre(tensor, mass, centre)
     if plane:
-        _check_planar(inertia, tensor)
+        if (izz := tensor[2][2]) < 0.0:
+            raise inertia.fault("izz about the centre of mass not negative", _told(izz, "izz"))
         return Body(mass, centre, tensor)
     return Body(mass, centre, _checked_spatial(inertia, tensor))
 
@@ -72,12 +73,7 @@ def _tensor(entry: Entry, *, plane: bool) -> Matrix3:
 def _moved_to_centre(tensor: Matrix3, mass: float, centre: Vector3) -> Matrix3:
     """The tensor about the centre of mass from the one about the body's origin (Steiner)."""
     c = np.array(centre)
-    return _matrix3(np.array(tensor) - mass * (c @ c * np.eye(3) - np.outer(c, c)))
-
-
-def _check_planar(entry: Entry, tensor: Matrix3) -> None:
-    if tensor[2][2] < 0.0:
-        raise entry.fault("izz about the centre of mass not negative", _told(tensor[2][2], "izz"))
+    return matrix3(np.array(tensor) - mass * (c @ c * np.eye(3) - np.outer(c, c)))
 
 
 def _checked_spatial(entry: Entry, tensor: Matrix3) -> Matrix3:
@@ -99,16 +95,11 @@ def _checked_spatial(entry: Entry, tensor: Matrix3) -> Matrix3:
             SpecWarning,
             stacklevel=2,
         )
-    return _matrix3(0.5 * (array + array.T))
+    return matrix3(0.5 * (array + array.T))
 
 
 def _told(value: float, what: str) -> str:
     return f"{what} {value:.6g} kg m^2"
-
-
-def _matrix3(array: npt.NDArray[np.float64]) -> Matrix3:
-    x, y, z = array.tolist()
-    return (tuple(x), tuple(y), tuple(z))
 
 
 MASSLESS = Body(0.0, ZERO3, ZERO33)

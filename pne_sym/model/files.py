@@ -32,19 +32,30 @@ def read_file(path: Path) -> str:
             raise SpecError(source, "", problem, "a specification in TOML or JSON")
         if path.suffix.lower() not in SUFFIXES:
             raise SpecError(source, "", f"file of kind '{path.suffix}'", "a .toml or .json file")
+    except OSError as error:
+        raise SpecError(source, "", f"cannot be read: {error.strerror}") from None
+    return bounded_text(path)
+
+
+def bounded_text(path: Path, kind: str = "UTF-8 text", most: int = MAX_BYTES) -> str:
+    """The text of a file of some kind, of so many bytes at the most.
+
+    Raises:
+        SpecError: unreadable, too large, or not UTF-8.
+    """
+    source = str(path)
+    try:
         with path.open("rb") as stream:
-            content = stream.read(MAX_BYTES + 1)
+            content = stream.read(most + 1)
     except (OSError, ValueError) as error:
-        if isinstance(error, SpecError):
-            raise
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise SpecError(source, "", f"cannot be read: {reason}") from None
-    if len(content) > MAX_BYTES:
-        raise SpecError(source, "", "file too large", f"at most {MAX_BYTES} bytes")
+    if len(content) > most:
+        raise SpecError(source, "", "file too large", f"at most {most} bytes")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise SpecError(source, "", f"byte {error.start} is not UTF-8", "UTF-8 text") from None
+        raise SpecError(source, "", f"byte {error.start} is not UTF-8", kind) from None
 
 
 def parse(text: str, suffix: str, source: str) -> object:

@@ -105,7 +105,8 @@ def structure_key(leg: Leg) -> Key:
         for joint in leg.joints
     )
     axes = np.array([joint.axis for joint in leg.joints])
-    relations = np.rint(np.where(_near_integer(axes @ axes.T), axes @ axes.T, 2.0)).astype(int)
+    cosines, rounded = axes @ axes.T, np.rint(axes @ axes.T)
+    relations = np.where(np.abs(cosines - rounded) < TOLERANCE, rounded, 2.0).astype(int)
     end = leg.platform_joint
     return (
         joints,
@@ -130,7 +131,3 @@ def _axis_key(axis: Vector3 | None) -> object:
     if axis is None:
         return None
     return tuple(int(a) for a in axis) if is_coordinate(axis) else "general"
-
-
-def _near_integer(values: _Array) -> NDArray[np.bool_]:
-    return np.asarray(np.abs(values - np.rint(values)) < TOLERANCE, dtype=np.bool_)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from pne_sym.model.closure import least_norm, leg_residual, solve, unreachable
 from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at
-from pne_sym.model.manipulator import Joint, Leg, Space, Vector3
+from pne_sym.model.manipulator import Joint, Leg, Manipulator, Space, Vector3
 
 Flags = npt.NDArray[np.bool_]
 
@@ -50,6 +50,11 @@ class Loops:
     space: Space
     legs: tuple[Leg, ...]
     centre: Vector3 | None
+
+    @staticmethod
+    def of(m: Manipulator) -> Loops:
+        """Those of a manipulator."""
+        return Loops(m.space, m.legs, m.fixed_centre)
 
     @property
     def size(self) -> int:

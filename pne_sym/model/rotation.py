@@ -1,8 +1,9 @@
-"""Small rotation helpers on tuples; no dependence on the specification format."""
+"""Small helpers on tuples, of rotations mostly; no dependence on the specification format."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -33,8 +34,19 @@ def is_rotation(matrix: Matrix3, tolerance: float) -> bool:
 def orthonormalised(matrix: Matrix3) -> Matrix3:
     """The rotation nearest to a matrix that is one up to rounding (polar factor)."""
     u, _, vt = np.linalg.svd(np.array(matrix))
-    x, y, z = (u @ vt).tolist()
-    return (tuple(x), tuple(y), tuple(z))
+    return matrix3(u @ vt)
+
+
+def vector3(values: Iterable[float]) -> Vector3:
+    """Three numbers as a vector."""
+    x, y, z = map(float, values)
+    return x, y, z
+
+
+def matrix3(rows: Iterable[Iterable[float]]) -> Matrix3:
+    """Three rows of three numbers as a matrix."""
+    x, y, z = map(vector3, rows)
+    return x, y, z
 
 
 def _cos_sin(angle: float, degrees: bool) -> tuple[float, float]:

@@ -44,7 +44,7 @@ def json_schema() -> Schema:
             "number": _NUMBER,
             "vector": _list_of(_ref("number"), 2, 3),
             "rows": {"anyOf": [_rows(3), _rows(2)]},
-            "axis": _axis(),
+            "axis": {"anyOf": [{"enum": list(values.DIRECTIONS)}, _ref("vector")]},
             "rotation": _rotation(),
             "body": _body(),
             "platform": _platform(),
@@ -155,7 +155,8 @@ def _for_each(item: Schema) -> Schema:
 
 def _effects() -> Schema:
     """Friction, spring, motor and limits of a joint."""
-    number, some, least = _ref("number"), _positive(), _POSITIVE
+    number, least = _ref("number"), _POSITIVE
+    some: Schema = {"type": "number", "minimum": values.SNAP, "maximum": values.LARGEST}
     scale: Schema = {"coulomb": ["velocity_scale"], "velocity_scale": ["coulomb"]}
     friction = _table(
         "friction",
@@ -174,10 +175,6 @@ def _effects() -> Schema:
         "actuator": _table("actuator", read_effects.ACTUATOR, actuator, read_effects.ACTUATOR),
         "limits": {**_table("limits", read_effects.LIMITS, limits, ()), "minProperties": 1},
     }
-
-
-def _positive() -> Schema:
-    return {"type": "number", "minimum": values.SNAP, "maximum": values.LARGEST}
 
 
 def _joint() -> Schema:
@@ -250,11 +247,6 @@ def _home() -> Schema:
         "q": {"anyOf": [flat, {"type": "array", "items": flat}]},
     }
     return _table("home", home.FIELDS, fields, ("X",))
-
-
-def _axis() -> Schema:
-    """A direction by name or by components."""
-    return {"anyOf": [{"enum": list(values.DIRECTIONS)}, _ref("vector")]}
 
 
 def _rotation() -> Schema:

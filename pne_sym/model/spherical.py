@@ -13,6 +13,7 @@ import numpy as np
 
 from pne_sym.model.kinematics import Array
 from pne_sym.model.manipulator import Joint, PlatformJoint, Vector3
+from pne_sym.model.rotation import vector3
 from pne_sym.model.values import DIRECTIONS, SNAP
 
 USUAL: tuple[Vector3, Vector3, Vector3] = (DIRECTIONS["z"], DIRECTIONS["y"], DIRECTIONS["x"])
@@ -49,8 +50,7 @@ def _direction(following: Joint | None, end: PlatformJoint) -> Vector3 | None:
     length = float(np.linalg.norm(end.offset))
     if length < SNAP:
         return None
-    x, y, z = (np.array(end.offset) / length).tolist()
-    return (x, y, z)
+    return vector3(np.array(end.offset) / length)
 
 
 def _ending_in(direction: Vector3) -> tuple[Vector3, Vector3, Vector3]:
@@ -65,5 +65,4 @@ def _ending_in(direction: Vector3) -> tuple[Vector3, Vector3, Vector3]:
 
 
 def _vector(x: Array) -> Vector3:
-    a, b, c = np.where(np.abs(x) < SNAP, 0.0, x).tolist()
-    return (a, b, c)
+    return vector3(np.where(np.abs(x) < SNAP, 0.0, x))

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
 
 from pne_sym.model.entry import Entry
 from pne_sym.model.errors import SpecWarning
 from pne_sym.model.manipulator import IDENTITY3, Matrix3, Vector3
-from pne_sym.model.rotation import is_rotation, orthonormalised, rotation_from_rpy
+from pne_sym.model.rotation import is_rotation, matrix3, orthonormalised, rotation_from_rpy, vector3
 
 SNAP = 1e-9
 """Components of axes (-) and offsets (m) below it are structural zeros."""
@@ -112,8 +111,8 @@ def axis(entry: Entry, *, plane: bool = False) -> Vector3:
     x = _snapped(x)
     length = math.hypot(*x)
     if sum(1 for c in x if c) == 1:
-        return _vector3([math.copysign(1.0, c) if c else 0.0 for c in x])
-    return x if abs(length - 1.0) <= EXACT else _vector3([c / length for c in x])
+        return vector3([math.copysign(1.0, c) if c else 0.0 for c in x])
+    return x if abs(length - 1.0) <= EXACT else vector3([c / length for c in x])
 
 
 def rotation(entry: Entry, *, plane: bool = False) -> Matrix3:
@@ -131,7 +130,7 @@ def rotation(entry: Entry, *, plane: bool = False) -> Matrix3:
         if name == "rpy" and max(map(abs, rpy)) > math.tau:
             message = f"{angles.source}: {angles.where}: more than a turn; rpy_deg is in degrees"
             warnings.warn(message, SpecWarning, stacklevel=2)
-        result = rotation_from_rpy(_vector3(rpy), degrees=name == "rpy_deg")
+        result = rotation_from_rpy(vector3(rpy), degrees=name == "rpy_deg")
     else:
         result = matrix(entry, plane=plane)
     if not is_rotation(result, ROUNDING):
@@ -152,8 +151,7 @@ def matrix(entry: Entry, *, plane: bool = False) -> Matrix3:
         return ((a, b, 0.0), (c, d, 0.0), IDENTITY3[2])
     if len(rows) != 3:
         raise entry.fault(shape)
-    x, y, z = (_vector3(numbers(row, 3, "three numbers (a row of the matrix)")) for row in rows)
-    return (x, y, z)
+    return matrix3(numbers(row, 3, "three numbers (a row of the matrix)") for row in rows)
 
 
 def flags(entry: Entry | None, count: int) -> tuple[bool, ...]:
@@ -174,8 +172,4 @@ def flags(entry: Entry | None, count: int) -> tuple[bool, ...]:
 
 
 def _snapped(x: Vector3) -> Vector3:
-    return _vector3([0.0 if abs(c) < SNAP else c for c in x])
-
-
-def _vector3(x: Sequence[float]) -> Vector3:
-    return (x[0], x[1], x[2])
+    return vector3([0.0 if abs(c) < SNAP else c for c in x])

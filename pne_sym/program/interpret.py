@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from pne_sym.program.evaluate import Array, Flags, Status, evaluate
 from pne_sym.program.ir import Program
 from pne_sym.program.iteration import close_loops
-from pne_sym.program.operations import OPERATIONS, finite
+from pne_sym.program.operation import finite
+from pne_sym.program.operations import OPERATIONS
 from pne_sym.program.public import Apply, Argument, Default, PublicFunction, Run, Search
 
 SEARCH_STEPS, HALVINGS = 50, 12

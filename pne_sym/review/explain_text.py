@@ -132,7 +132,7 @@ def explanation(told: Explanation) -> Iterator[str]:
         must = ">= 0" if condition.status.value == "unreachable" else "not near 0"
         yield f"  {condition.status.value} unless {plain(condition.value)} is {must}"
     for step in equation.steps:
-        yield from _hanging(f"  {step.rule.name}: ", f"{plain(step.before)} -> {plain(step.after)}")
+        yield from _hanging(f"  {step.rule}: ", f"{plain(step.before)} -> {plain(step.after)}")
     yield from _list("uses", told.uses)
     yield from _list("used by", told.used_by)
 

@@ -11,8 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pne_sym.model.errors import SpecError, SpecWarning, show
+from pne_sym.model.files import bounded_text
 from pne_sym.model.legs import is_plane
 from pne_sym.model.manipulator import Space, Vector3
+from pne_sym.model.rotation import vector3
 from pne_sym.starter.notation import LegGroup, is_guide
 
 _LARGEST = 1024 * 1024
@@ -63,11 +65,11 @@ class PointsFile:
             )
         base, platform = ([[*row[a : a + size], *zero] for row in rows] for a in (0, size))
         height = _height(self.height, space)
-        return Points(tuple(map(_vector, base)), tuple(map(_vector, platform)), height)
+        return Points(tuple(map(vector3, base)), tuple(map(vector3, platform)), height)
 
     def _rows(self) -> list[tuple[int, list[str]]]:
         """Rows with their lines; blank ones and comments are left out, and a first row of names."""
-        text = self._text()
+        text = bounded_text(self.path, "a CSV file", _LARGEST)
         mark = ";" if ";" in text else ","
         reader = csv.reader(io.StringIO(text, newline=""), delimiter=mark, strict=True)
         rows = []
@@ -90,20 +92,6 @@ class PointsFile:
         if wrong is not None:
             raise self._fault(f"line {line}: {show(wrong)}", f"a number, m: {names}")
         return [float(cell) for cell in cells]
-
-    def _text(self) -> str:
-        try:
-            with self.path.open("rb") as stream:
-                content = stream.read(_LARGEST + 1)
-        except (OSError, ValueError) as error:
-            reason = error.strerror if isinstance(error, OSError) else str(error)
-            raise self._fault(f"cannot be read: {reason}") from None
-        if len(content) > _LARGEST:
-            raise self._fault("file too large", f"at most {_LARGEST} bytes")
-        try:
-            return content.decode("utf-8-sig")
-        except UnicodeDecodeError as error:
-            raise self._fault(f"byte {error.start} is not UTF-8", "a CSV file") from None
 
     def _fault(self, problem: str, expected: str = "") -> SpecError:
         return SpecError(str(self.path), "", problem, expected)
@@ -168,7 +156,7 @@ def _height(height: float | None, space: Space) -> float:
 
 def _on_ring(radius: float, degrees: float) -> Vector3:
     angle = math.radians(degrees)
-    return _vector([round(radius * f(angle), 12) + 0.0 for f in (math.cos, math.sin)] + [0.0])
+    return vector3([round(radius * f(angle), 12) + 0.0 for f in (math.cos, math.sin)] + [0.0])
 
 
 def _is_number(cell: str) -> bool:
@@ -176,7 +164,3 @@ def _is_number(cell: str) -> bool:
         return math.isfinite(float(cell)) and abs(float(cell)) <= 1e12
     except ValueError:
         return False
-
-
-def _vector(x: Sequence[float]) -> Vector3:
-    return (x[0], x[1], x[2])

@@ -15,7 +15,7 @@ from pne_sym.model.errors import SpecError, SpecNote, show
 from pne_sym.model.legs import is_plane
 from pne_sym.model.manipulator import Manipulator, Space
 from pne_sym.model.names import read_name
-from pne_sym.model.reader import from_text
+from pne_sym.model.reader import from_mapping, from_text
 from pne_sym.starter.actuators import check_actuators
 from pne_sym.starter.layout import Plan, default_space, make_plan
 from pne_sym.starter.notation import LegGroup, parse_legs
@@ -122,7 +122,7 @@ def _lines(plan: Plan, space: Space) -> Iterator[str]:
     spec = plan.spec
     yield f"# {spec['title']}"
     yield from HEAD
-    found = mobility(from_text(_plain_toml(plan), SUFFIX, "starter"))
+    found = mobility(from_mapping(spec, "starter"))
     yield from textwrap.wrap(f"# {found}.", 96, subsequent_indent="# ")
     yield ""
     yield f"name = {_value(spec['name'])}  # of files, modules and prefixes"
@@ -150,11 +150,6 @@ def _lines(plan: Plan, space: Space) -> Iterator[str]:
     for row in _list(home["q"]):
         yield f"    {_value(row)},"
     yield "]"
-
-
-def _plain_toml(plan: Plan) -> str:
-    """The same without comments, each top-level field on one line."""
-    return "\n".join(f"{name} = {_value(value)}" for name, value in plan.spec.items())
 
 
 def _platform(body: object, space: Space) -> Iterator[str]:

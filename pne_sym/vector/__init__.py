@@ -5,7 +5,7 @@ SymPy expressions that may contain `Dot` of vectors.  Nothing
 here knows mechanics.
 """
 
-from pne_sym.vector.linear import LinearForm, linear_form
+from pne_sym.vector.linear import RULE_I, RULE_II, LinearForm, RuleApplication, linear_form
 from pne_sym.vector.nodes import (
     Apply,
     Axial,
@@ -37,7 +37,6 @@ from pne_sym.vector.nodes import (
     tensor_sum,
     vector_sum,
 )
-from pne_sym.vector.rules import RULE_I, RULE_II, Rule, RuleApplication, RuleI, RuleII
 
 __all__ = [
     "RULE_I",
@@ -53,10 +52,7 @@ __all__ = [
     "LegSum",
     "LinearForm",
     "Outer",
-    "Rule",
     "RuleApplication",
-    "RuleI",
-    "RuleII",
     "Skew",
     "Tensor",
     "TensorAdd",

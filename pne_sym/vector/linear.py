@@ -17,6 +17,8 @@ from pne_sym.vector.nodes import (
     Cross,
     Dot,
     Identity,
+    Outer,
+    Skew,
     Transpose,
     Vector,
     VectorAdd,
@@ -27,14 +29,27 @@ from pne_sym.vector.nodes import (
     sum_over_legs,
     vector_sum,
 )
-from pne_sym.vector.rules import (
-    RULE_II,
-    RuleApplication,
-    apply_rule_i,
-    apply_rule_ii,
-)
 
 Coefficients = dict[Any, Any]
+RULE_I = "Rule I"
+"""(a . x) b = (b a^T) x."""
+RULE_II = "Rule II"
+"""a x x = skew(a) x."""
+
+
+@dataclass(frozen=True)
+class RuleApplication:
+    """One recorded use of a rule.
+
+    Attributes:
+        rule: the rule used.
+        before: the product as it stood.
+        after: the same value as coefficient applied to the unknown.
+    """
+
+    rule: str
+    before: Any
+    after: Any
 
 
 class NotLinearError(ValueError):
@@ -146,8 +161,8 @@ class _Collector:
         result: Coefficients = {}
         for x, c in scalar_coefficients.items():
             if isinstance(x, VectorSymbol):
-                result[x], step = apply_rule_i(c, x, vector)
-                self.steps.append(step)
+                result[x], before = Outer(vector, c), Dot(c, x) * vector
+                self.steps.append(RuleApplication(RULE_I, before, result[x] @ x))
             else:
                 result[x] = vector * c
         return result, vector * remainder
@@ -162,8 +177,7 @@ class _Collector:
             if not isinstance(x, VectorSymbol):
                 result[x] = Cross(fixed, c) * sign
                 continue
-            tensor, _ = apply_rule_ii(fixed, x, sp.Integer(sign))
-            result[x] = tensor @ c
+            result[x] = (Skew(fixed) * sign) @ c
             before = Cross(fixed, c @ x) if sign == 1 else Cross(c @ x, fixed)
             self.steps.append(RuleApplication(RULE_II, before, result[x] @ x))
         return result, Cross(fixed, remainder) * sign

@@ -7,13 +7,14 @@ Nothing is ever expanded into components here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any, TypeAlias
+from collections.abc import Callable, Iterable
+from typing import Any, Generic, TypeAlias, TypeVar
 
 import sympy as sp
 from sympy.core.symbol import Str
 
 Scalar: TypeAlias = Any
+_Node = TypeVar("_Node", bound="Vector | Tensor")
 
 
 class _Printable:
@@ -25,46 +26,33 @@ class _Printable:
         return f"{type(self).__name__}({', '.join(printer.doprint(arg) for arg in self.args)})"
 
 
-class Vector(_Printable, sp.Basic):
+class _Linear(Generic[_Node]):
+    """What can be added, and multiplied by a scalar."""
+
+    def __add__(self, other: _Node) -> _Node:
+        return _total((self, other), _parts_of(other)[0])
+
+    def __sub__(self, other: _Node) -> _Node:
+        return self + -other
+
+    def __neg__(self) -> _Node:
+        return scale(sp.S.NegativeOne, self)  # type: ignore[type-var, return-value]
+
+    def __mul__(self, factor: Any) -> _Node:
+        return scale(sp.sympify(factor), self)  # type: ignore[type-var, return-value]
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, divisor: Any) -> _Node:
+        return scale(1 / sp.sympify(divisor), self)  # type: ignore[type-var, return-value]
+
+
+class Vector(_Linear["Vector"], _Printable, sp.Basic):
     """A vector in the plane or in space."""
 
-    def __add__(self, other: Vector) -> Vector:
-        return vector_sum((self, other))
 
-    def __sub__(self, other: Vector) -> Vector:
-        return vector_sum((self, -other))
-
-    def __neg__(self) -> Vector:
-        return scale(sp.S.NegativeOne, self)
-
-    def __mul__(self, factor: Any) -> Vector:
-        return scale(sp.sympify(factor), self)
-
-    __rmul__ = __mul__
-
-    def __truediv__(self, divisor: Any) -> Vector:
-        return scale(1 / sp.sympify(divisor), self)
-
-
-class Tensor(_Printable, sp.Basic):
+class Tensor(_Linear["Tensor"], _Printable, sp.Basic):
     """A linear map of vectors (a second-order tensor)."""
-
-    def __add__(self, other: Tensor) -> Tensor:
-        return tensor_sum((self, other))
-
-    def __sub__(self, other: Tensor) -> Tensor:
-        return tensor_sum((self, -other))
-
-    def __neg__(self) -> Tensor:
-        return scale_tensor(sp.S.NegativeOne, self)
-
-    def __mul__(self, factor: Any) -> Tensor:
-        return scale_tensor(sp.sympify(factor), self)
-
-    __rmul__ = __mul__
-
-    def __truediv__(self, divisor: Any) -> Tensor:
-        return scale_tensor(1 / sp.sympify(divisor), self)
 
     def __matmul__(self, other: Any) -> Any:
         """The tensor applied to a vector, or composed with a tensor."""
@@ -140,7 +128,7 @@ class Cross(Vector):
         factor_b, b = split_scale(b)
         if ZeroVector in (a, b) or a == b:
             return ZeroVector
-        return scale(factor_a * factor_b, super().__new__(cls, a, b))
+        return scale(factor_a * factor_b, super().__new__(cls, a, b))  # type: ignore[no-any-return]
 
 
 class Apply(Vector):
@@ -182,7 +170,7 @@ class Skew(Tensor):
         if a == ZeroVector:
             return ZeroTensor
         factor, a = split_scale(a)
-        return scale_tensor(factor, super().__new__(cls, a))
+        return scale(factor, super().__new__(cls, a))  # type: ignore[no-any-return]
 
 
 class Outer(Tensor):
@@ -194,7 +182,7 @@ class Outer(Tensor):
             return ZeroTensor
         factor_a, a = split_scale(a)
         factor_b, b = split_scale(b)
-        return scale_tensor(factor_a * factor_b, super().__new__(cls, a, b))
+        return scale(factor_a * factor_b, super().__new__(cls, a, b))  # type: ignore[no-any-return]
 
 
 class Compose(Tensor):
@@ -208,14 +196,14 @@ class Transpose(Tensor):
         """Build simplified."""
         if a in (ZeroTensor, Identity) or (isinstance(a, TensorSymbol) and a.is_symmetric):
             return a
-        factor, a = split_tensor_scale(a)
+        factor, a = split_scale(a)
         if isinstance(a, Transpose):
-            return scale_tensor(factor, a.args[0])
+            return scale(factor, a.args[0])  # type: ignore[no-any-return]
         if isinstance(a, Skew):
-            return scale_tensor(-factor, a)
+            return scale(-factor, a)
         if isinstance(a, Outer):
-            return scale_tensor(factor, Outer(a.args[1], a.args[0]))
-        return scale_tensor(factor, super().__new__(cls, a))
+            return scale(factor, Outer(a.args[1], a.args[0]))
+        return scale(factor, super().__new__(cls, a))  # type: ignore[no-any-return]
 
 
 class TensorLegSum(Tensor):
@@ -249,7 +237,7 @@ class Trace(_VectorScalar):
 
     def __new__(cls, a: Tensor) -> Scalar:
         """Build simplified."""
-        factor, a = split_tensor_scale(a)
+        factor, a = split_scale(a)
         return sp.S.Zero if a == ZeroTensor else factor * super().__new__(cls, a)
 
 
@@ -275,65 +263,57 @@ def norm(a: Vector) -> Scalar:
     return sp.sqrt(Dot(a, a))
 
 
-def split_scale(a: Vector) -> tuple[Scalar, Vector]:
-    """A vector as scalar factor and rest."""
-    return (a.args[0], a.args[1]) if isinstance(a, VectorScale) else (sp.S.One, a)
+def _parts_of(a: _Node) -> tuple[_Node, Any, Callable[..., _Node]]:
+    """Zero, and the nodes of sums and of multiples, of what `a` is one of."""
+    vectors, tensors = (ZeroVector, VectorAdd, VectorScale), (ZeroTensor, TensorAdd, TensorScale)
+    return vectors if isinstance(a, Vector) else tensors
 
 
-def split_tensor_scale(a: Tensor) -> tuple[Scalar, Tensor]:
-    """A tensor as scalar factor and rest."""
-    return (a.args[0], a.args[1]) if isinstance(a, TensorScale) else (sp.S.One, a)
+def split_scale(a: _Node) -> tuple[Scalar, _Node]:
+    """A vector or tensor as scalar factor and rest."""
+    factor, rest = a.args if isinstance(a, VectorScale | TensorScale) else (sp.S.One, a)
+    return factor, rest
 
 
-def scale(factor: Scalar, a: Vector) -> Vector:
-    """Scalar times vector."""
-    if factor == 0 or a == ZeroVector:
-        return ZeroVector
-    if isinstance(a, VectorScale):
-        factor, a = factor * a.args[0], a.args[1]
-    if isinstance(a, VectorAdd) and factor == -1:
-        return vector_sum(-term for term in a.args)
-    return a if factor == 1 else VectorScale(factor, a)
+def scale(factor: Scalar, a: _Node) -> _Node:
+    """Scalar times vector or tensor."""
+    zero, total, multiple = _parts_of(a)
+    if factor == 0 or a == zero:
+        return zero
+    own, a = split_scale(a)
+    factor = factor * own
+    if isinstance(a, total) and factor == -1:
+        return _total((-term for term in a.args), zero)
+    return a if factor == 1 else multiple(factor, a)
 
 
-def scale_tensor(factor: Scalar, a: Tensor) -> Tensor:
-    """Scalar times tensor."""
-    if factor == 0 or a == ZeroTensor:
-        return ZeroTensor
-    if isinstance(a, TensorScale):
-        factor, a = factor * a.args[0], a.args[1]
-    if isinstance(a, TensorAdd) and factor == -1:
-        return tensor_sum(-term for term in a.args)
-    return a if factor == 1 else TensorScale(factor, a)
+def _total(terms: Iterable[Any], zero: _Node) -> _Node:
+    """Sum; flattened, zeros dropped, order kept."""
+    _, total, _ = _parts_of(zero)
+    flat: list[_Node] = []
+    for term in terms:
+        flat.extend(term.args if isinstance(term, total) else (term,))
+    flat = [term for term in flat if term != zero]
+    if len(flat) < 2:
+        return flat[0] if flat else zero
+    return total(*flat)  # type: ignore[no-any-return]
 
 
 def vector_sum(terms: Iterable[Vector]) -> Vector:
     """Sum of vectors; flattened, zeros dropped, order kept."""
-    flat: list[Vector] = []
-    for term in terms:
-        flat.extend(term.args if isinstance(term, VectorAdd) else (term,))
-    flat = [term for term in flat if term != ZeroVector]
-    if len(flat) < 2:
-        return flat[0] if flat else ZeroVector
-    return VectorAdd(*flat)
+    return _total(terms, ZeroVector)
 
 
 def tensor_sum(terms: Iterable[Tensor]) -> Tensor:
-    """Sum of tensors; flattened, zeros dropped, order kept."""
-    flat: list[Tensor] = []
-    for term in terms:
-        flat.extend(term.args if isinstance(term, TensorAdd) else (term,))
-    flat = [term for term in flat if term != ZeroTensor]
-    if len(flat) < 2:
-        return flat[0] if flat else ZeroTensor
-    return TensorAdd(*flat)
+    """Sum of tensors, likewise."""
+    return _total(terms, ZeroTensor)
 
 
 def apply(a: Tensor, v: Vector) -> Vector:
     """A tensor applied to a vector."""
     if a == ZeroTensor or v == ZeroVector:
         return ZeroVector
-    factor_a, a = split_tensor_scale(a)
+    factor_a, a = split_scale(a)
     factor_v, v = split_scale(v)
     return scale(factor_a * factor_v, v if a == Identity else Apply(a, v))
 
@@ -346,7 +326,7 @@ def compose(a: Tensor, b: Tensor) -> Tensor:
         return b
     if b == Identity:
         return a
-    factor_a, a = split_tensor_scale(a)
-    factor_b, b = split_tensor_scale(b)
+    factor_a, a = split_scale(a)
+    factor_b, b = split_scale(b)
     product = b if a == Identity else a if b == Identity else Compose(a, b)
-    return scale_tensor(factor_a * factor_b, product)
+    return scale(factor_a * factor_b, product)

@@ -18,7 +18,8 @@ from pne_sym.backends.c_steps import Steps
 from pne_sym.backends.c_support import needed
 from pne_sym.backends.c_text import Routine, parameter_name
 from pne_sym.program.evaluate import Status
-from pne_sym.program.operations import OPERATIONS, finite
+from pne_sym.program.operation import finite
+from pne_sym.program.operations import OPERATIONS
 from pne_sym.program.public import Apply, Argument, PublicFunction, Value
 from tests import models
 from tests.backends.c_library import WARNINGS, find_compiler, run

@@ -97,7 +97,7 @@ def test_a_pose_that_begins_with_a_minus_and_a_first_guess(tmp_path: Path) -> No
         (("--pose", "9,0,0"), "X: legs[1] does not reach it; a loop-closure residual of 8.7"),
         (("--q", "1,2"), "q: 6 numbers are needed, not [1.0, 2.0]"),
         (("--pose", "0,0,0", "--path", "a.csv"), "--pose and --path exclude each other"),
-        (("--path", "none.csv"), "cannot read none.csv: No such file or directory"),
+        (("--path", "none.csv"), "none.csv: cannot be read: No such file or directory"),
         (("--path", "a.csv", "-o", "a.png"), "cannot animate a.png: its name ends in .gif, .mp4"),
         (("--path", "a.csv"), "a.csv: line 4: 3 numbers (x, y, phi) are needed, not 2 (0, 0)"),
         (("--path", "b.csv"), "b.csv: line 2: 'x' is not a number; commas stand between"),

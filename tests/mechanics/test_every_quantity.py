@@ -138,7 +138,7 @@ class Examination:
             self.account.compare(f"{where}, form {k + 1}", names.value(form), value)
         for step in equation.steps:
             self.account.compare(
-                f"{where}, {step.rule.name}: {step.before}",
+                f"{where}, {step.rule}: {step.before}",
                 names.value(step.after),
                 names.value(step.before),
             )

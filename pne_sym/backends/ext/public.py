@@ -143,12 +143,9 @@ class Bindings:
             given = {a.name for a in other.inputs} <= {a.name for a in f.inputs}
             if given and [o.label for o in other.outputs] == [value.name]:
                 required = [a.name for a in other.required] + ["p"] * other.needs_model
-                return f"{other.name}({', '.join([*required, *_by_keyword(other)])})"
+                optional = [f"{a.name}={a.name}" for a in other.optional]
+                return f"{other.name}({', '.join([*required, *optional])})"
         raise TargetError(f"{self.name}: the target ext has no function that gives {value.name}")
-
-
-def _by_keyword(f: PublicFunction) -> list[str]:
-    return [f"{a.name}={a.name}" for a in f.optional]
 
 
 def _maker(f: PublicFunction, value: Value) -> Apply | Run | None:

@@ -161,7 +161,7 @@ class ChapterWriter:
             return None
         rows = [
             (
-                step.rule.name,
+                step.rule,
                 inline(printer.doprint(step.before)),
                 inline(printer.doprint(step.after)),
             )

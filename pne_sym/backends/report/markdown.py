@@ -56,8 +56,8 @@ def display(left: str, rows: Sequence[Sequence[Term]]) -> tuple[str, ...]:
         left: the left-hand side.
         rows: terms of each right-hand side.
     """
-    short = len(rows) == 1 and visible_width(left) + _width(rows[0]) <= LINE
-    if short:
+    width = visible_width(left) + sum(visible_width(t.text) + 3 for row in rows for t in row)
+    if len(rows) == 1 and width <= LINE:
         lines = _terms(rows[0], "= ")
         one = f"{left} {' '.join(lines)}"
         return (one,) if len(one) <= SOURCE else (left, *lines)
@@ -67,10 +67,6 @@ def display(left: str, rows: Sequence[Sequence[Term]]) -> tuple[str, ...]:
             lines[-1] += r" \\"
         lines += _wrapped(row)
     return (*lines, r"\end{aligned}")
-
-
-def _width(terms: Sequence[Term]) -> float:
-    return sum(visible_width(term.text) + 3 for term in terms)
 
 
 def _terms(terms: Sequence[Term], sign: str) -> list[str]:

@@ -52,7 +52,7 @@ def _letters(bundle: Bundle) -> str:
 def cases(bundle: Bundle) -> tuple[str, ...]:
     """The cases of section 3 of the paper that apply."""
     sizes, manipulator = bundle.coordinates.sizes, bundle.manipulator
-    joints = [joint for leg in manipulator.legs for joint in leg.joints]
+    joints = manipulator.joints
     actuators = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
     spare = [
         sum(joint.actuated and joint.extra for joint in leg.joints) for leg in manipulator.legs
@@ -95,7 +95,11 @@ def _order_rows(bundle: Bundle) -> Iterator[tuple[str, str]]:
         rates += "; then those of the extra coordinates"
     yield "`X`", pose
     yield "`V`, `A`", f"{rates} (A: their derivatives)"
-    yield "`tau`", _per_type(bundle, lambda joint: joint.actuated, _effort) or "none"
+    yield (
+        "`tau`",
+        _per_type(bundle, lambda joint: joint.actuated, lambda joint: joint.kind.effort_unit)
+        or "none",
+    )
     yield "`q`", _per_type(bundle, lambda _: True, _displacement)
     if c.constraints:
         units = ", ".join(map(unit, c.constraint_units))
@@ -120,10 +124,6 @@ def _listed(names: tuple[str, ...]) -> str:
 
 def _displacement(joint: Joint) -> str:
     return joint.kind.unit
-
-
-def _effort(joint: Joint) -> str:
-    return joint.kind.effort_unit
 
 
 def _per_type(bundle: Bundle, pick: object, measure: object) -> str:

@@ -48,9 +48,9 @@ def overview(bundle: Bundle, collected: Collected, printer: LatexPrinter) -> Ite
     )
     text = f"Put into Newton's and Euler's equations of the platform these give ({over}):"
     for row in (("M", "Z"), ("H", "Hk")) if "Hk" in blocks else (tuple(blocks),):
-        parts = [blocks[array] for array in row]
-        beside = tuple(line for k, of in enumerate(parts) for line in _beside(k, of))
-        yield Statement(text, beside)
+        first, *others = (blocks[array] for array in row)
+        beside = (line for lines in others for line in (r",\qquad", *lines))
+        yield Statement(text, (*first, *beside))
         text = "and for actuators and reactions:"
     chapter = next((c for c in derivation.chapters if defines_blocks(derivation, c)), None)
     if chapter is not None:
@@ -118,7 +118,3 @@ def _turns_along(velocity: Any, axis: Any, definitions: Mapping[Any, Any]) -> bo
     arm = velocity.args[1]
     arm = definitions.get(arm, arm)
     return arm == axis or (isinstance(arm, VectorScale) and arm.args[1] == axis)
-
-
-def _beside(k: int, lines: tuple[str, ...]) -> tuple[str, ...]:
-    return (r",\qquad", *lines) if k else lines

@@ -10,7 +10,7 @@ from pne_sym.backends.python_text import PythonText
 from pne_sym.backends.scalar import Dialect, ScalarPrinter
 from pne_sym.backends.steps import StepText
 from pne_sym.backends.straight import Forms
-from pne_sym.program.operations import TINY
+from pne_sym.program.array_operations import TINY
 
 _NAMES = {"sqrt": "s.sqrt", "nonzero": "s.nonzero", "atan2": "s.atan2"}
 _NAMES |= {"sin": "xp.sin", "cos": "xp.cos", "Abs": "abs", "Min": "xp.minimum"}
