@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_functions import LANES, FunctionText, function_text
+from pne_sym.backends.c_functions import LANES, FunctionText, FunctionWriter
 from pne_sym.backends.c_model import (
     default_values,
     model_fields,
@@ -15,6 +15,7 @@ from pne_sym.backends.c_model import (
     parameter_fields,
     prepare_body,
 )
+from pne_sym.backends.c_once import Once
 from pne_sym.backends.c_operations import OPERATIONS, biggest, results_of, runs_in_lanes
 from pne_sym.backends.c_parts import least_values
 from pne_sym.backends.c_public import Caller, c_functions
@@ -103,7 +104,7 @@ def _view(bundle: Bundle) -> CView:
     """What the templates print."""
     run = _run(bundle)
     stages = Stages(run.values())
-    functions = _texts(bundle, run, stages)
+    once, functions = _texts(bundle, run, stages)
     closures = tuple(
         CClosure(
             closure,
@@ -120,6 +121,7 @@ def _view(bundle: Bundle) -> CView:
     texts = [
         "/* ---- what functions of the state share; v: values for others ---- */",
         *stage_texts(bundle, stages),
+        *once.texts(),
         *(f.text for n, f in functions.items() if n in closing),
         *([_closing(bundle, closures)] if closures else []),
         "/* ---- functions of the state: M, Z, H and the like ---- */",
@@ -204,19 +206,18 @@ def _run(bundle: Bundle) -> dict[str, Function]:
 
 def _texts(
     bundle: Bundle, functions: dict[str, Function], stages: Stages
-) -> dict[str, FunctionText]:
+) -> tuple[Once, dict[str, FunctionText]]:
     """Functions of the program; for states side by side where a public one wants it."""
     program = bundle.program
     printed = [f for f in program.public if any(o.value.size for o in f.outputs)]
     single = Counter(name for f in printed for name in f.functions)
     lanes = Counter(name for f in printed if runs_in_lanes(f) for name in f.functions)
     summed = {name for f in program.public for name in results_of(f).values()}
-    return {
-        name: function_text(
-            bundle, function, stages, (single[name], lanes[name]), summed=name in summed
-        )
-        for name, function in functions.items()
-    }
+    writers = [
+        FunctionWriter(bundle, f, stages, summed=name in summed) for name, f in functions.items()
+    ]
+    once = Once(routine for writer in writers for routine in writer.routines())
+    return once, {w.name: w.text(once, single[w.name], lanes[w.name]) for w in writers}
 
 
 def _steps(

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_once import Once
 from pne_sym.backends.c_parts import Parts
 from pne_sym.backends.c_sizes import array_names, count_of, times
 from pne_sym.backends.c_stages import Stages
@@ -37,40 +38,44 @@ class FunctionText:
         return routine
 
 
-def function_text(
-    bundle: Bundle, function: Function, stages: Stages, users: tuple[int, int], *, summed: bool
-) -> FunctionText:
-    """A function of the program.
+class FunctionWriter:
+    """Prints a function of the program.
 
     Args:
         bundle: of the model.
         function: the function, with common sums.
         stages: what it shares with others.
-        users: how many public functions run it for one state, and for states side by side.
         summed: with the sum of all that it gives, to tell whether that is finite.
     """
-    parts = Parts(bundle, function, stages, summed=summed)
-    return _FunctionWriter(bundle, parts).text(*users)
 
-
-class _FunctionWriter:
-    def __init__(self, bundle: Bundle, parts: Parts) -> None:
-        self.bundle, self.parts, self.f = bundle, parts, parts.f
-        self.name = self.f.name
+    def __init__(self, bundle: Bundle, function: Function, stages: Stages, *, summed: bool) -> None:
+        self.bundle, self.f, self.name = bundle, function, function.name
+        self.parts = Parts(bundle, function, stages, summed=summed)
         self.before, self.between = self.parts.before(), self.parts.between()
         self.legs = [(b, self.parts.over(b), self.parts.place(b)) for b in self.parts.legs]
         self.adding = [b for b in self.parts.legs if b.sums]
         self.after = self.parts.after() if self.parts.last else None
 
-    def text(self, single: int, many: int) -> FunctionText:
-        """All routines, each after what it calls; several users call the same, compiled once."""
+    def routines(self) -> list[tuple[str, Routine]]:
+        """The parts, each with a name that says nothing of the function."""
+        found = [self.before, self.between, *(r for _, *both in self.legs for r in both)]
+        found += [self.after] if self.after else []
+        return [(f"any{r.name.removeprefix(self.name)}", r) for r in found]
+
+    def text(self, once: Once, single: int, many: int) -> FunctionText:
+        """All routines, each after what it calls; several users call the same, compiled once.
+
+        Args:
+            once: routines that functions have in common, which stand elsewhere.
+            single: how many public functions run it for one state.
+            many: and for states side by side.
+        """
         lines = comment(f"---- {self.name} ----")
-        for part in (self.before, self.between):
-            lines += [*part.definition(), ""] if part.body else []
-        for _, over, place in self.legs:
-            lines += [*over.definition(), "", *place.definition(), ""]
-        if self.after:
-            lines += [*self.after.definition(), ""]
+        for _, routine in self.routines():
+            lines += once.own(routine)
+        self.before, self.between = once.of(self.before), once.of(self.between)
+        self.legs = [(b, once.of(over), once.of(place)) for b, over, place in self.legs]
+        self.after = once.of(self.after) if self.after else None
         one = self._run("1", self._kind(single))
         lanes = self._run("LANES", self._kind(many)) if many else None
         lines += one.definition()
