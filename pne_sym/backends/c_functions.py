@@ -11,7 +11,8 @@ from pne_sym.backends.c_parts import Parts
 from pne_sym.backends.c_sizes import array_names, count_of, times
 from pne_sym.backends.c_stages import Stages
 from pne_sym.backends.c_statements import vector_name
-from pne_sym.backends.c_text import Routine, comment, indented, listing
+from pne_sym.backends.c_text import WIDTH, Routine, comment, indented, listing
+from pne_sym.backends.scalar import wrap
 from pne_sym.program.ir import Block, Function
 
 LANES = 8
@@ -107,16 +108,11 @@ class FunctionWriter:
         words = "\n".join(body)
         sizes = {"s": len(self.parts.passed), "sums": len(self.parts.sums)}
         names = [n for n, k in sizes.items() if k and f" {n}" in words]
-        # gcc's analyzer does not see that the legs set all of it
-        zero = " = {0}" * single
-        buffers = [f"{n}[{times(sizes[n], w)}]{zero}" for n in names]
+        start = " CLEARED" * single
+        buffers = [f"{n}[{times(sizes[n], w)}]{start}" for n in names]
         head = listing("real ", buffers, ";") if buffers else []
         for block in self.parts.legs:
-            width = f"LEGS({count_of(block.leg_type)})" if single else w
-            rows = len(block.stores) + len(self.parts.flag_rows(block))
-            terms = len(self.parts.sums) if single and block.sums else 0
-            sizes = {f"terms_{block.leg_type}": terms, f"o_{block.leg_type}": rows}
-            buffers = [f"{n}[{times(k, width)}]{zero}" for n, k in sizes.items() if k]
+            buffers = self._given(block, start) if single else self._given_in_lanes(block)
             head += listing("real ", buffers, ";") if buffers else []
         parameters = [
             "const prepared *m",
@@ -126,6 +122,23 @@ class FunctionWriter:
         ]
         name = f"{self.name}_run{'' if single else '_lanes'}"
         return Routine.of(name, parameters, [*head, *body], kind)
+
+    def _given(self, block: Block, start: str) -> list[str]:
+        """Buffers for what the legs of one state give; zero in sums to which they add nothing."""
+        leg, sums = block.leg_type, self.parts.sums
+        width = f"LEGS({count_of(leg)})"
+        rows = len(block.stores) + len(self.parts.flag_rows(block))
+        buffers = [f"o_{leg}[{times(rows, width)}]{start}"] if rows else []
+        if block.sums:
+            every = {str(target) for target, _ in block.sums}.issuperset(sums)
+            terms = f"terms_{leg}[{times(len(sums), width)}]"
+            buffers.insert(0, terms + (start if every else " = {0}"))
+        return buffers
+
+    def _given_in_lanes(self, block: Block) -> list[str]:
+        """A buffer for what one leg gives in all lanes; terms are added up where sums stand."""
+        rows = len(block.stores) + len(self.parts.flag_rows(block))
+        return [f"o_{block.leg_type}[{times(rows, 'LANES')}]"] if rows else []
 
     def _one_state(self) -> list[str]:
         """One state up to its sums: what only these meet comes after the legs."""
@@ -147,13 +160,26 @@ class FunctionWriter:
         for block, over, place in self.legs:
             legs = count_of(block.leg_type)
             given = {"w": "1", "count": f"LEGS({legs})", **self._arrays(block, single=True)}
-            lines += _each(over, given["count"], {**given, "i": "k", "j": "0", "add": "0"})
+            lines += self._over_legs(over, legs, {**given, "j": "0", "add": "0"})
             if place.body:
                 call = place.call_with({**given, "k": "0", "at": "i"})
                 ends += [f"for (size_t i = 0; i < {legs}; ++i) {{", f"    {call}", "}"]
             if block.sums:
                 ends += self._added(f"terms_{block.leg_type}", legs, block is self.adding[0])
         return lines + ends
+
+    def _over_legs(self, over: Routine, legs: str, given: Mapping[str, str]) -> list[str]:
+        """All legs in one loop; one vector after another where solving follows at once."""
+        if self.parts.summed:
+            return _each(over, f"LEGS({legs})", {**given, "i": "k"})
+        one = over.call_with({**given, "i": "i + k", "k": "i + k"})
+        return [
+            f"for (size_t i = 0; i < LEGS({legs}); i += BESIDE({legs})) {{",
+            f"    for (size_t k = 0; k < BESIDE({legs}); ++k) {{",
+            *indented(wrap(one, WIDTH - 12, "    "), 2),
+            "    }",
+            "}",
+        ]
 
     def _added(self, terms: str, legs: str, first: bool) -> list[str]:
         """What legs add to the sums, one after another over all types, as for states in lanes."""

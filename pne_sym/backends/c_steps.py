@@ -215,8 +215,9 @@ class Steps:
         if given:
             self.at[value.name] = given
         elif value.size:
-            zeroed = " = {0}" * (zero or not self.lanes)
-            self.buffers.append(self._buffer(value.name, self._size(value)) + zeroed)
+            plain = zero or not (self.lanes or step)
+            start = " = {0}" if plain else " CLEARED" * (not self.lanes)
+            self.buffers.append(self._buffer(value.name, self._size(value)) + start)
         return self.at[value.name]
 
     def _inputs(self) -> list[str]:
