@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1233,17 +1244,17 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real rus_J_3_t_10, rus_J_3_t_11, rus_J_3_t_15, rus_J_3_t_17, rus_e_1_in_axes3_x, rus_c_1, rus_s_1,
-        rus_c_2, rus_s_2_t, rus_r_1_t, rus_v_1_t_2, rus_v_1_in_axes3_y, rus_v_1_in_axes3_z,
-        axis_z_rus_axes3_x, axis_z_rus_axes3_y, axis_z_rus_axes3_z, axis_y_rus_axes3_x,
-        axis_y_rus_axes3_y, axis_y_rus_axes3_z, axis_x_rus_axes3_x, axis_x_rus_axes3_y,
-        axis_x_rus_axes3_z, inv_rus_v_1_t_2, rus_w_1_t_7, rus_w_1_t_8, rus_w_1_t_9,
-        rus_w_2_in_axes3_z, rus_bias_t, rus_d_2_in_axes3_z, rus_g_in_axes3_x, rus_g_in_axes3_y,
+        rus_c_2, rus_s_2_t, rus_r_1_in_axes3_z, rus_d_2_in_axes3_x, rus_r_1_in_axes3_y, rus_v_1_t,
+        rus_v_1_in_axes3_y, rus_v_1_in_axes3_z, rus_v_2_in_axes3_z, axis_z_rus_axes3_x,
+        axis_z_rus_axes3_y, axis_z_rus_axes3_z, axis_y_rus_axes3_x, axis_y_rus_axes3_y,
+        axis_y_rus_axes3_z, axis_x_rus_axes3_x, axis_x_rus_axes3_y, axis_x_rus_axes3_z, inv_rus_v_1_t,
+        rus_w_1_t_7, rus_w_1_t_8, rus_w_1_t_9, rus_w_2_in_axes3_z, rus_g_in_axes3_x, rus_g_in_axes3_y,
         rus_g_in_axes3_z, rus_d_Gamma_2_t_2, rus_g_in_axes1_x, rus_g_in_axes1_y, rus_mu_1_t_3,
         rus_S_ddot_in_axes3_x, rus_S_ddot_in_axes3_y, rus_S_ddot_in_axes3_z, rus_qd_1_t, rus_qd_2,
         rus_qd_3, rus_W_3_in_axes3_yz, rus_W_3_in_axes3_xz, rus_W_3_in_axes3_xy, rus_bias_in_axes3_x,
         rus_bias_in_axes3_y, rus_bias_in_axes3_z, rus_mu_3_t_4, rus_mu_3_t_5, rus_mu_3_t_6, rus_c_t,
-        rus_c_t_2, rus_c_t_3, rus_qdd_1_t, rus_qdd_2, rus_qdd_3_t, rus_Q_xx, rus_Q_xy, rus_Q_xz,
-        rus_Q_yy, rus_Q_yz, rus_Q_zz, rus_U_x, rus_U_y, rus_U_z, rus_acc_3_in_axes3_x,
+        rus_c_t_2, rus_c_t_3, rus_qdd_1_t, rus_qdd_2, rus_qdd_3_t, rus_Q_xx, rus_Q_yy, rus_Q_t_13,
+        rus_Q_xy, rus_Q_xz, rus_Q_yz, rus_U_x, rus_U_y, rus_U_z, rus_acc_3_in_axes3_x,
         rus_acc_3_in_axes3_y, rus_acc_3_in_axes3_z, rus_c_in_axes3_x, rus_c_in_axes3_y,
         rus_c_in_axes3_z;
 } values_rus;
@@ -1288,18 +1299,18 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
     v->rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16;
     /* (rus-r_1) from joint 1 to the connection point, along the links */
-    v->rus_r_1_t = v->rus_J_3_t_17*m->rus_platform_joint_offset_x[i];
-    const real rus_r_1_in_axes1_z = v->rus_e_1_in_axes3_x*m->rus_platform_joint_offset_x[i];
-    const real rus_r_1_t_2 = v->rus_r_1_t*v->rus_s_2_t;
-    const real rus_r_1_in_axes1_x = m->rus_joint2_offset_x[i] + v->rus_c_2*v->rus_r_1_t;
-    const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*v->rus_s_2_t - v->rus_c_2*rus_r_1_t_2;
+    const real rus_r_1_t = v->rus_c_2*m->rus_joint2_offset_x[i];
+    v->rus_r_1_in_axes3_z = m->rus_joint2_offset_x[i]*v->rus_s_2_t;
+    v->rus_d_2_in_axes3_x = v->rus_J_3_t_17*rus_r_1_t;
+    v->rus_r_1_in_axes3_y = v->rus_e_1_in_axes3_x*rus_r_1_t;
+    const real rus_r_1_in_axes3_x = m->rus_platform_joint_offset_x[i] + v->rus_d_2_in_axes3_x;
     /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-    const real rus_v_1_t = v->rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*v->rus_s_2_t;
-    v->rus_v_1_t_2 = v->rus_J_3_t_17*rus_r_1_in_axes3_z;
-    v->rus_v_1_in_axes3_y = -v->rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-    v->rus_v_1_in_axes3_z = v->rus_J_3_t_17*(v->rus_e_1_in_axes3_x*rus_r_1_in_axes1_z +
-        v->rus_J_3_t_17*rus_v_1_t) + v->rus_e_1_in_axes3_x*(v->rus_e_1_in_axes3_x*rus_v_1_t -
-        v->rus_J_3_t_17*rus_r_1_in_axes1_z);
+    v->rus_v_1_t = v->rus_J_3_t_17*v->rus_r_1_in_axes3_z;
+    v->rus_v_1_in_axes3_y = -v->rus_e_1_in_axes3_x*v->rus_r_1_in_axes3_z;
+    v->rus_v_1_in_axes3_z = v->rus_e_1_in_axes3_x*v->rus_r_1_in_axes3_y +
+        v->rus_J_3_t_17*rus_r_1_in_axes3_x;
+    /* (rus-v_2) velocity of the connection point per rate of joint 2 */
+    v->rus_v_2_in_axes3_z = v->rus_J_3_t_17*m->rus_platform_joint_offset_x[i];
     /* (rus-w_1) reciprocal vector 1 */
     const real rus_w_1_t = v->rus_c_1*v->rus_s_2_t - v->rus_c_2*v->rus_s_1;
     const real rus_w_1_t_2 = v->rus_c_1*v->rus_c_2 + v->rus_s_1*v->rus_s_2_t;
@@ -1325,15 +1336,12 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_z;
     v->axis_x_rus_axes3_z = v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_y -
         v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_x;
-    v->inv_rus_v_1_t_2 = 1/v->rus_v_1_t_2;
-    v->rus_w_1_t_7 = v->axis_x_rus_axes3_x*v->inv_rus_v_1_t_2;
-    v->rus_w_1_t_8 = v->axis_x_rus_axes3_y*v->inv_rus_v_1_t_2;
-    v->rus_w_1_t_9 = v->axis_x_rus_axes3_z*v->inv_rus_v_1_t_2;
+    v->inv_rus_v_1_t = 1/v->rus_v_1_t;
+    v->rus_w_1_t_7 = v->axis_x_rus_axes3_x*v->inv_rus_v_1_t;
+    v->rus_w_1_t_8 = v->axis_x_rus_axes3_y*v->inv_rus_v_1_t;
+    v->rus_w_1_t_9 = v->axis_x_rus_axes3_z*v->inv_rus_v_1_t;
     /* (rus-w_2) reciprocal vector 2 */
-    v->rus_w_2_in_axes3_z = 1/v->rus_r_1_t;
-    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    v->rus_bias_t = v->rus_c_2*m->rus_joint2_offset_x[i];
-    v->rus_d_2_in_axes3_z = m->rus_joint2_offset_x[i]*v->rus_s_2_t;
+    v->rus_w_2_in_axes3_z = 1/v->rus_v_2_in_axes3_z;
     /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
     v->rus_g_in_axes3_x = v->axis_x_rus_axes3_x*m->gravity_x +
         v->axis_x_rus_axes3_y*m->gravity_y + v->axis_x_rus_axes3_z*m->gravity_z;
@@ -1373,7 +1381,7 @@ INLINE void stage_rus_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real t_dot_x = V[0*w + j];
     const real t_dot_y = V[1*w + j];
     const real t_dot_z = V[2*w + j];
-    v->rus_qd_1_t = v->inv_rus_v_1_t_2*(v->axis_x_rus_axes3_x*t_dot_x +
+    v->rus_qd_1_t = v->inv_rus_v_1_t*(v->axis_x_rus_axes3_x*t_dot_x +
         v->axis_x_rus_axes3_y*t_dot_y + v->axis_x_rus_axes3_z*t_dot_z);
     /* (rus-qd_2) rate of joint 2 */
     v->rus_qd_2 = v->rus_w_2_in_axes3_z*(v->axis_z_rus_axes3_x*t_dot_x +
@@ -1395,16 +1403,16 @@ INLINE void stage_rus_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*v->rus_qd_3;
     v->rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
     /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    const real rus_bias_t_2 = v->rus_J_3_t_17*v->rus_bias_t*rus_omega_1_in_axes3_y -
-        v->rus_bias_t*v->rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
-    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    v->rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - v->rus_qd_3*rus_qd_3_t -
-        rus_bias_t_2*rus_omega_1_in_axes3_y;
-    v->rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
-        rus_bias_t_3*rus_omega_2_in_axes3_x;
+    const real rus_bias_t = v->rus_d_2_in_axes3_x*rus_omega_1_in_axes3_y -
+        rus_omega_1_in_axes3_x*v->rus_r_1_in_axes3_y;
+    const real rus_bias_t_2 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
+    v->rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_2_in_axes3_y -
+        rus_bias_t*rus_omega_1_in_axes3_y - v->rus_qd_3*rus_qd_3_t;
+    v->rus_bias_in_axes3_y = rus_bias_t*rus_omega_1_in_axes3_x -
+        rus_bias_t_2*rus_omega_2_in_axes3_x;
     v->rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
-        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
+        rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x*v->rus_r_1_in_axes3_z -
+        rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y*v->rus_r_1_in_axes3_z +
         v->rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
     /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
@@ -1427,7 +1435,7 @@ INLINE void stage_rus_A_V_X(const prepared *m, size_t i, values_rus *v)
     const real rus_rel_in_axes3_y = v->rus_S_ddot_in_axes3_y - v->rus_bias_in_axes3_y;
     const real rus_rel_in_axes3_z = v->rus_S_ddot_in_axes3_z - v->rus_bias_in_axes3_z;
     /* (rus-qdd_1) acceleration of joint 1 */
-    v->rus_qdd_1_t = v->inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+    v->rus_qdd_1_t = v->inv_rus_v_1_t*rus_rel_in_axes3_x;
     /* (rus-qdd_2) acceleration of joint 2 */
     v->rus_qdd_2 = v->rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
         v->rus_qdd_1_t*v->rus_v_1_in_axes3_z);
@@ -1448,18 +1456,18 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
         m->rus_J_3_in_spec3_xz[i]*v->rus_J_3_t_17);
     /* (rus-w_2) reciprocal vector 2 */
     const real rus_w_2_in_axes3_x =
-        v->inv_rus_v_1_t_2*v->rus_v_1_in_axes3_z*v->rus_w_2_in_axes3_z;
+        v->inv_rus_v_1_t*v->rus_v_1_in_axes3_z*v->rus_w_2_in_axes3_z;
     /* (rus-w_3) reciprocal vector 3 */
     const real rus_w_3_in_axes3_x =
-        v->inv_rus_v_1_t_2*v->rus_v_1_in_axes3_y*m->rus_w_3_in_axes3_y[i];
+        v->inv_rus_v_1_t*v->rus_v_1_in_axes3_y*m->rus_w_3_in_axes3_y[i];
     /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
     const real rus_d_alpha_3_t = v->rus_J_3_t_17*v->rus_w_2_in_axes3_z;
     /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
     const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*v->rus_w_2_in_axes3_z;
     const real rus_d_Gamma_3_in_axes3_x = m->rus_h_3_in_spec3_z[i] -
-        v->inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz - m->rus_d_Gamma_3_t[i]*v->rus_v_1_in_axes3_y
-        - rus_d_Gamma_3_in_axes3_z*v->rus_v_1_in_axes3_z);
+        v->inv_rus_v_1_t*(rus_J_3_in_axes2_yz - m->rus_d_Gamma_3_t[i]*v->rus_v_1_in_axes3_y -
+        rus_d_Gamma_3_in_axes3_z*v->rus_v_1_in_axes3_z);
     /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     const real rus_d_Gamma_2_t = v->rus_J_3_t_17*m->rus_h_3_in_spec3_y[i];
@@ -1467,14 +1475,14 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
     const real rus_d_Gamma_2_t_4 = rus_J_3_in_axes2_yz*m->rus_w_3_in_axes3_y[i];
     const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*v->rus_v_1_in_axes3_z;
     const real rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*v->rus_v_1_in_axes3_y;
-    const real rus_d_Gamma_2_in_axes3_x = v->inv_rus_v_1_t_2*(rus_d_Gamma_2_t_6 -
+    const real rus_d_Gamma_2_in_axes3_x = v->inv_rus_v_1_t*(rus_d_Gamma_2_t_6 -
         rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5) - rus_d_Gamma_2_t;
     const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_4 -
         v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_y[i];
     const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_3 - v->rus_d_Gamma_2_t_2;
     /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rus_d_Gamma_1_in_axes3_x = v->inv_rus_v_1_t_2*(rus_d_Gamma_2_t_6 -
+    const real rus_d_Gamma_1_in_axes3_x = v->inv_rus_v_1_t*(rus_d_Gamma_2_t_6 -
         m->rus_J_1_in_spec1_zz[i] - rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5) -
         rus_d_Gamma_2_t;
     /* (rus-d_G) coefficient of the acceleration in: force at the connection point that balances the
@@ -1482,25 +1490,27 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
     const real rus_d_G_in_axes3_zy = rus_d_Gamma_2_in_axes3_y*v->rus_w_2_in_axes3_z;
     /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real rus_d_c_in_axes3_xx = v->inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x -
-        rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
+    const real rus_d_c_in_axes3_xx = v->inv_rus_v_1_t*rus_d_Gamma_1_in_axes3_x -
         rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
         m->rus_h_3_in_spec3_z[i]*rus_w_3_in_axes3_x -
-        m->rus_h_3_in_spec3_y[i]*(v->inv_rus_v_1_t_2*v->rus_J_3_t_17 -
+        rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
+        m->rus_h_3_in_spec3_y[i]*(v->inv_rus_v_1_t*v->rus_J_3_t_17 -
         v->rus_J_3_t_17*rus_w_2_in_axes3_x);
-    const real rus_d_c_in_axes3_xy = v->inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
+    const real rus_d_c_in_axes3_xy = v->inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_y -
         m->rus_d_phi_3_in_axes3_xy[i] - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x -
         m->rus_d_Gamma_3_in_axes3_y[i]*rus_w_3_in_axes3_x;
     const real rus_d_c_in_axes3_xz = rus_d_alpha_3_t*m->rus_h_3_in_spec3_y[i] +
-        v->inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z -
+        v->inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_z -
         rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
         rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x;
+    const real rus_d_c_in_axes3_zz =
+        v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i]*v->rus_w_2_in_axes3_z -
+        rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
+        rus_d_Gamma_2_in_axes3_z*v->rus_w_2_in_axes3_z;
     /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rus_Q_t = rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
     const real rus_Q_t_2 = R(0.5)*rus_Q_t;
-    const real rus_Q_t_3 = rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
-        v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i]*v->rus_w_2_in_axes3_z +
-        rus_d_Gamma_2_in_axes3_z*v->rus_w_2_in_axes3_z + rus_d_c_in_axes3_xx;
+    const real rus_Q_t_3 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_zz;
     const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
     const real rus_Q_t_5 = v->axis_z_rus_axes3_x*rus_d_G_in_axes3_zy -
         v->axis_x_rus_axes3_x*rus_d_c_in_axes3_xy + v->axis_y_rus_axes3_x*rus_Q_t_2;
@@ -1516,23 +1526,22 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
         v->axis_x_rus_axes3_z*rus_d_c_in_axes3_xz;
     const real rus_Q_t_11 = v->axis_y_rus_axes3_x*rus_Q_t_5 + v->axis_z_rus_axes3_x*rus_Q_t_8;
     v->rus_Q_xx = 2*rus_Q_t_11 - rus_d_c_in_axes3_xx;
+    const real rus_Q_t_12 = v->axis_y_rus_axes3_y*rus_Q_t_6 + v->axis_z_rus_axes3_y*rus_Q_t_9;
+    v->rus_Q_yy = 2*rus_Q_t_12 - rus_d_c_in_axes3_xx;
+    v->rus_Q_t_13 = m->rus_d_c_in_axes3_yy[i] + rus_d_c_in_axes3_zz + rus_d_c_in_axes3_xx +
+        v->rus_Q_xx + v->rus_Q_yy;
     v->rus_Q_xy = v->axis_y_rus_axes3_x*rus_Q_t_6 + v->axis_y_rus_axes3_y*rus_Q_t_5 +
         v->axis_z_rus_axes3_x*rus_Q_t_9 + v->axis_z_rus_axes3_y*rus_Q_t_8;
     v->rus_Q_xz = v->axis_y_rus_axes3_x*rus_Q_t_7 + v->axis_y_rus_axes3_z*rus_Q_t_5 +
         v->axis_z_rus_axes3_x*rus_Q_t_10 + v->axis_z_rus_axes3_z*rus_Q_t_8;
-    const real rus_Q_t_12 = v->axis_y_rus_axes3_y*rus_Q_t_6 + v->axis_z_rus_axes3_y*rus_Q_t_9;
-    v->rus_Q_yy = 2*rus_Q_t_12 - rus_d_c_in_axes3_xx;
     v->rus_Q_yz = v->axis_y_rus_axes3_y*rus_Q_t_7 + v->axis_y_rus_axes3_z*rus_Q_t_6 +
         v->axis_z_rus_axes3_y*rus_Q_t_10 + v->axis_z_rus_axes3_z*rus_Q_t_9;
-    const real rus_Q_t_13 = v->axis_y_rus_axes3_z*rus_Q_t_7 +
-        v->axis_z_rus_axes3_z*rus_Q_t_10;
-    v->rus_Q_zz = 2*rus_Q_t_13 - rus_d_c_in_axes3_xx;
 }
 
 INLINE void stage_rus_Z_dynamics(const prepared *m, size_t i, values_rus *v)
 {
     /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rus_qdd_1_o = v->inv_rus_v_1_t_2*v->rus_bias_in_axes3_x;
+    const real rus_qdd_1_o = v->inv_rus_v_1_t*v->rus_bias_in_axes3_x;
     /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
     const real rus_qdd_3_o = -m->rus_w_3_in_axes3_y[i]*(v->rus_bias_in_axes3_y +
         rus_qdd_1_o*v->rus_v_1_in_axes3_y);
@@ -1587,7 +1596,7 @@ INLINE void stage_rus_Z_dynamics(const prepared *m, size_t i, values_rus *v)
     const real rus_c_o_in_axes3_x = v->rus_c_t +
         rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
         rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
-        v->inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*v->rus_v_1_in_axes3_y -
+        v->inv_rus_v_1_t*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*v->rus_v_1_in_axes3_y -
         rus_G_o_in_axes3_z*v->rus_v_1_in_axes3_z);
     const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
         v->rus_c_t_2 - rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
@@ -1655,13 +1664,29 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
     /* (rus-c) leg force on the platform without actuation and without the mass at the connection
        point */
     v->rus_c_in_axes3_x = v->rus_c_t + rus_B_3_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
-        rus_alpha_2_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
-        v->inv_rus_v_1_t_2*(rus_N_1_in_axes1_z - rus_G_in_axes3_y*v->rus_v_1_in_axes3_y -
-        rus_G_in_axes3_z*v->rus_v_1_in_axes3_z);
+        rus_alpha_2_in_axes3_y*m->rus_h_3_in_spec3_y[i] + v->inv_rus_v_1_t*(rus_N_1_in_axes1_z
+        - rus_G_in_axes3_y*v->rus_v_1_in_axes3_y - rus_G_in_axes3_z*v->rus_v_1_in_axes3_z);
     v->rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*m->rus_h_3_in_spec3_y[i] - v->rus_c_t_2 -
         rus_B_3_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_in_axes3_y;
     v->rus_c_in_axes3_z = v->rus_c_t_3 + rus_B_3_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
         rus_B_3_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_in_axes3_z;
+}
+
+INLINE void any_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
+}
+
+INLINE void any_place_rus_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
@@ -1681,7 +1706,7 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[2*count + k], add, v.rus_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.rus_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.rus_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rus_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rus_Q_t_13);  /* M_tt_zz_of_legs */
     /* (Z_t) translational part of Z */
     gather(&terms[6*count + k], add, v.rus_U_x);  /* Z_t_x_of_legs */
     gather(&terms[7*count + k], add, v.rus_U_y);  /* Z_t_y_of_legs */
@@ -1693,21 +1718,9 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     o[5*count + k] = v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9);
     o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
-}
-
-INLINE void dynamics_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
@@ -1719,7 +1732,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
     /* (Z_t) */
     const real Z_t_x_of_legs = sums[6*w + k];
     const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
@@ -1751,13 +1764,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real sums[9] = {0};
-    real terms_rus[9*LEGS(LEGS_OF_rus)] = {0}, o_rus[6*LEGS(LEGS_OF_rus)] = {0};
+    real sums[9] CLEARED;
+    real terms_rus[9*LEGS(LEGS_OF_rus)] CLEARED, o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         dynamics_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, V, terms_rus, o_rus);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
-        dynamics_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
+        any_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
@@ -1776,7 +1789,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rus(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rus);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
+            any_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1797,19 +1810,12 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[2*count + k], add, v.rus_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.rus_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.rus_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rus_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rus_Q_t_13);  /* M_tt_zz_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
-}
-
-INLINE void M_place_rus(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
@@ -1821,7 +1827,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -1840,13 +1846,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real sums[6] = {0};
-    real terms_rus[6*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
+    real sums[6] CLEARED;
+    real terms_rus[6*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         M_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
-        M_place_rus(0, i, LEGS(LEGS_OF_rus), o_rus, t);
+        any_place_rus_2(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
@@ -1865,7 +1871,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rus(m, LANES, i, k, k, LANES, 1, X, sums, o_rus);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rus(k, k, LANES, o_rus, t);
+            any_place_rus_2(k, k, LANES, o_rus, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1887,16 +1893,9 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[2*count + k], add, v.rus_U_z);  /* Z_t_z_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
-}
-
-INLINE void Z_place_rus(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
@@ -1918,13 +1917,13 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real sums[3] = {0};
-    real terms_rus[3*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
+    real sums[3] CLEARED;
+    real terms_rus[3*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         Z_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, V, terms_rus, o_rus);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
-        Z_place_rus(0, i, LEGS(LEGS_OF_rus), o_rus, t);
+        any_place_rus_2(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
@@ -1943,7 +1942,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rus(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rus);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rus(k, k, LANES, o_rus, t);
+            any_place_rus_2(k, k, LANES, o_rus, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1964,31 +1963,19 @@ INLINE void H_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[5*count + k] = v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9);
     o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_1_t) >
         TOLERANCE*m->rus_size[i]);
     o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
-INLINE void H_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
+    real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         H_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), X, o_rus);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
-        H_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
+        any_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
     }
 }
 
@@ -2001,7 +1988,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
             H_legs_rus(m, LANES, i, k, k, LANES, X, o_rus);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
+            any_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
         }
     }
 }
@@ -2052,9 +2039,8 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     o[2*count + k] = -v.rus_w_1_t_9;
     o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
@@ -2089,10 +2075,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[3] = {0}, sums[3] = {0};
-    real terms_rus[3*LEGS(LEGS_OF_rus)] = {0}, o_rus[5*LEGS(LEGS_OF_rus)] = {0};
-    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
-        required_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, V, A, terms_rus, o_rus);
+    real s[3] CLEARED, sums[3] CLEARED;
+    real terms_rus[3*LEGS(LEGS_OF_rus)] CLEARED, o_rus[5*LEGS(LEGS_OF_rus)] CLEARED;
+    for (size_t i = 0; i < LEGS(LEGS_OF_rus); i += BESIDE(LEGS_OF_rus)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rus); ++k) {
+            required_legs_rus(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rus), 0, X, V, A, terms_rus,
+                o_rus);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         required_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
@@ -2164,7 +2153,7 @@ INLINE void inverse_kinematics_place_rus(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
+    real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         inverse_kinematics_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), X, o_rus);
     }
@@ -2203,9 +2192,8 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j
     o[5*count + k] = v.rus_qd_1_t + (v.rus_qd_2 + v.rus_qd_3);
     o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
@@ -2223,7 +2211,7 @@ INLINE void joint_rates_place_rus(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
+    real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         joint_rates_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), X, V, o_rus);
     }
@@ -2264,9 +2252,8 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, 
     o[5*count + k] = v.rus_qdd_1_t + (v.rus_qdd_2 + v.rus_qdd_3_t);
     o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
@@ -2284,7 +2271,7 @@ INLINE void joint_accelerations_place_rus(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
+    real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         joint_accelerations_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), X, V, A, o_rus);
     }
@@ -2343,9 +2330,8 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_
     o[5*count + k] = -v.rus_w_1_t_9;
     o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
@@ -2365,9 +2351,11 @@ INLINE void legs_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real o_rus[8*LEGS(LEGS_OF_rus)] = {0};
-    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
-        legs_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), X, V, A, o_rus);
+    real o_rus[8*LEGS(LEGS_OF_rus)] CLEARED;
+    for (size_t i = 0; i < LEGS(LEGS_OF_rus); i += BESIDE(LEGS_OF_rus)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rus); ++k) {
+            legs_legs_rus(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rus), X, V, A, o_rus);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         legs_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, leg_force, actuator, t);
@@ -2411,12 +2399,6 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
     o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
-INLINE void potential_place_rus(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -2429,13 +2411,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[1] = {0}, sums[1] = {0};
-    real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
-    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
-        potential_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
+    real s[1] CLEARED, sums[1] CLEARED;
+    real terms_rus[LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
+    for (size_t i = 0; i < LEGS(LEGS_OF_rus); i += BESIDE(LEGS_OF_rus)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rus); ++k) {
+            potential_legs_rus(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
-        potential_place_rus(0, i, LEGS(LEGS_OF_rus), o_rus, t);
+        any_place_rus_2(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
@@ -2462,8 +2446,8 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
        degrees of freedom */
     const real rus_pivot_size = magnitude(v.rus_J_3_t_10);
     const real rus_pivot_size_2 = magnitude(v.rus_J_3_t_15);
-    const real rus_pivot_size_3 = magnitude(v.rus_r_1_t);
-    const real rus_pivot_size_4 = magnitude(v.rus_v_1_t_2);
+    const real rus_pivot_size_3 = magnitude(v.rus_v_2_in_axes3_z);
+    const real rus_pivot_size_4 = magnitude(v.rus_v_1_t);
     const real rus_least_pivots =
         lesser(lesser(lesser(root(m->inv_rus_rho2_1_t[i]*rus_pivot_size),
         m->inv_rus_size[i]*rus_pivot_size_3), m->inv_rus_size[i]*rus_pivot_size_4),
@@ -2487,9 +2471,8 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
         v.rus_J_3_t_11));
     o[6*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[5*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
@@ -2520,8 +2503,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real sums[1] = {0};
-    real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[8*LEGS(LEGS_OF_rus)] = {0};
+    real sums[1] CLEARED;
+    real terms_rus[LEGS(LEGS_OF_rus)] CLEARED, o_rus[8*LEGS(LEGS_OF_rus)] CLEARED;
     condition_before(m, 1, 0, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         condition_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
@@ -2768,7 +2751,7 @@ int delta_inverse_dynamics(const prepared *m, const real *X, const real *V, cons
     real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -2817,8 +2800,8 @@ int delta_forward_dynamics(const prepared *m, const real *X, const real *V, cons
     real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -2887,7 +2870,7 @@ int delta_leg_reactions(const prepared *m, const real *X, const real *V, const r
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[9] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -2904,7 +2887,7 @@ int delta_leg_reactions(const prepared *m, const real *X, const real *V, const r
 int delta_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2922,7 +2905,7 @@ int delta_energy(const prepared *m, const real *X, const real *V, real *kinetic_
 
 int delta_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, reach[NL] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, reach[NL] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2941,8 +2924,8 @@ int delta_condition(const prepared *m, const real *X, real *sigma_out, real *leg
 
 int delta_manipulability(const prepared *m, const real *X, real *measure_out, real *isotropy_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
-        {0}, measure[1] = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
+        singular_values_1[NV] = {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2963,8 +2946,8 @@ int delta_manipulability(const prepared *m, const real *X, real *measure_out, re
 int delta_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
     *legs_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
-        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
+        singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2986,8 +2969,8 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     *residual_out)
 {
     static const size_t places_residual[] = {0, 1, 2};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] = {0}, residual[NU] =
-        {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] CLEARED, residual[NU]
+        CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -3075,7 +3058,7 @@ int delta_dissipation(const prepared *m, const real *X, const real *V, real *dis
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -3088,7 +3071,7 @@ int delta_dissipation(const prepared *m, const real *X, const real *V, real *dis
 
 int delta_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3100,7 +3083,7 @@ int delta_momentum(const prepared *m, const real *X, const real *V, real *moment
 int delta_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3115,7 +3098,7 @@ int delta_joint_margins(const prepared *m, const real *X, real *margins_out)
 
 int delta_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3129,7 +3112,7 @@ int delta_within_limits(const prepared *m, const real *X, real *within_out)
 
 int delta_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3140,7 +3123,7 @@ int delta_actuator_positions(const prepared *m, const real *X, real *q_out)
 
 int delta_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3152,7 +3135,7 @@ int delta_actuator_rates(const prepared *m, const real *X, const real *V, real *
 int delta_actuator_accelerations(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3163,7 +3146,7 @@ int delta_actuator_accelerations(const prepared *m, const real *X, const real *V
 
 int delta_power(const prepared *m, const real *X, const real *V, const real *tau, real *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -3175,7 +3158,7 @@ int delta_power(const prepared *m, const real *X, const real *V, const real *tau
 
 int delta_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real X_moved[NQ] = {0};
+    real X_moved[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -3187,7 +3170,7 @@ int delta_retract(const real *X, const real *step, real *X_moved_out)
 
 int delta_difference(const real *X0, const real *X1, real *step_out)
 {
-    real step[NV] = {0};
+    real step[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -3199,7 +3182,7 @@ int delta_difference(const real *X0, const real *X1, real *step_out)
 
 int delta_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real subtract_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    real subtract_1[NQ] CLEARED, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

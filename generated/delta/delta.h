@@ -135,18 +135,18 @@ extern const char *const delta_ACTUATOR_NAMES[DELTA_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int delta_prepare(const delta_params *params, delta_model *model);
 
-/* Inertia matrix M. 513 mul, 321 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 483 mul, 315 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int delta_M(const delta_model *model, const delta_real *X, delta_real *M);
 size_t delta_M_batch(const delta_model *model, size_t n, const delta_real *X, delta_real *M, int
     *status);
 
-/* Velocity and gravity terms Z. 594 mul, 378 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 561 mul, 366 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int delta_Z(const delta_model *model, const delta_real *X, const delta_real *V, delta_real *Z);
 size_t delta_Z_batch(const delta_model *model, size_t n, const delta_real *X, const delta_real *V,
     delta_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 240 mul, 120 add, 9 div, 6 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 228 mul, 114 add, 9 div, 6 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int delta_H(const delta_model *model, const delta_real *X, delta_real *H);
 size_t delta_H_batch(const delta_model *model, size_t n, const delta_real *X, delta_real *H, int
@@ -158,28 +158,28 @@ int delta_inverse_kinematics(const delta_model *model, const delta_real *X, delt
 size_t delta_inverse_kinematics_batch(const delta_model *model, size_t n, const delta_real *X,
     delta_real *q, int *status);
 
-/* Rates of all joints. 303 mul, 156 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 282 mul, 144 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int delta_joint_rates(const delta_model *model, const delta_real *X, const delta_real *V,
     delta_real *rates);
 size_t delta_joint_rates_batch(const delta_model *model, size_t n, const delta_real *X, const
     delta_real *V, delta_real *rates, int *status);
 
-/* Accelerations of all joints. 414 mul, 213 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 381 mul, 201 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int delta_joint_accelerations(const delta_model *model, const delta_real *X, const delta_real *V,
     const delta_real *A, delta_real *accelerations);
 size_t delta_joint_accelerations_batch(const delta_model *model, size_t n, const delta_real *X,
     const delta_real *V, const delta_real *A, delta_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 855 mul, 567 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 813 mul, 561 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int delta_dynamics(const delta_model *model, const delta_real *X, const delta_real *V, delta_real
     *M, delta_real *Z, delta_real *H);
 size_t delta_dynamics_batch(const delta_model *model, size_t n, const delta_real *X, const
     delta_real *V, delta_real *M, delta_real *Z, delta_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 633 mul, 417 add, 12 div, 6 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 600 mul, 405 add, 12 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int delta_inverse_dynamics(const delta_model *model, const delta_real *X, const delta_real *V,
@@ -187,7 +187,7 @@ int delta_inverse_dynamics(const delta_model *model, const delta_real *X, const 
 size_t delta_inverse_dynamics_batch(const delta_model *model, size_t n, const delta_real *X, const
     delta_real *V, const delta_real *A, const delta_real *wrench, delta_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 855 mul, 567 add, 12 div, 6 sqrt,
+/* Acceleration A under the actuator forces tau and the wrench. 813 mul, 561 add, 12 div, 6 sqrt,
    0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW,
    or NULL). Out: A (NV). */
 int delta_forward_dynamics(const delta_model *model, const delta_real *X, const delta_real *V,
@@ -205,7 +205,7 @@ size_t delta_complete_acceleration_batch(const delta_model *model, size_t n, con
     *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 639 mul, 411 add, 12 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 606 mul, 399 add, 12 div, 6 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int delta_leg_reactions(const delta_model *model, const delta_real *X, const delta_real *V, const
     delta_real *A, const delta_real *wrench, delta_real *forces);
@@ -222,7 +222,7 @@ size_t delta_energy_batch(const delta_model *model, size_t n, const delta_real *
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 262 mul, 147 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 253 mul, 141 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (3), legs (3). */
 int delta_condition(const delta_model *model, const delta_real *X, delta_real *sigma, delta_real
     *legs);
@@ -230,15 +230,15 @@ size_t delta_condition_batch(const delta_model *model, size_t n, const delta_rea
     *sigma, delta_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 262 mul, 147 add, 9 div, 13 sqrt, 0 trig; the singular
+   the least over the largest of them. 253 mul, 141 add, 9 div, 13 sqrt, 0 trig; the singular
    values apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int delta_manipulability(const delta_model *model, const delta_real *X, delta_real *measure,
     delta_real *isotropy);
 size_t delta_manipulability_batch(const delta_model *model, size_t n, const delta_real *X,
     delta_real *measure, delta_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 262
-   mul, 147 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 253
+   mul, 141 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int delta_singularity_distance(const delta_model *model, const delta_real *X, delta_real
     *actuators, delta_real *legs);
@@ -260,7 +260,7 @@ int delta_dissipation(const delta_model *model, const delta_real *X, const delta
 size_t delta_dissipation_batch(const delta_model *model, size_t n, const delta_real *X, const
     delta_real *V, delta_real *dissipation, int *status);
 
-/* Generalised momentum M V. 513 mul, 321 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 483 mul, 315 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int delta_momentum(const delta_model *model, const delta_real *X, const delta_real *V, delta_real
     *momentum);
@@ -285,14 +285,14 @@ int delta_actuator_positions(const delta_model *model, const delta_real *X, delt
 size_t delta_actuator_positions_batch(const delta_model *model, size_t n, const delta_real *X,
     delta_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 303 mul, 156 add, 12 div, 6 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 282 mul, 144 add, 12 div, 6 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int delta_actuator_rates(const delta_model *model, const delta_real *X, const delta_real *V,
     delta_real *rates);
 size_t delta_actuator_rates_batch(const delta_model *model, size_t n, const delta_real *X, const
     delta_real *V, delta_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 414 mul, 213 add, 12 div, 6 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 381 mul, 201 add, 12 div, 6 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int delta_actuator_accelerations(const delta_model *model, const delta_real *X, const delta_real
     *V, const delta_real *A, delta_real *accelerations);

@@ -1708,7 +1708,7 @@ def _at(m, function, X, given, at):
     return found
 
 
-# dynamics: 855 mul, 567 add, 12 div, 6 sqrt, 0 trig
+# dynamics: 813 mul, 561 add, 12 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
@@ -1732,8 +1732,7 @@ def _run_dynamics(m, X, V):
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
     (
-    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_rus_zz, Z_t_rus_x, Z_t_rus_y,
-        Z_t_rus_z,
+    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_t, Z_t_rus_x, Z_t_rus_y, Z_t_rus_z,
     ) = [0.0] * 9
     for leg, k in legs[0]:
         (
@@ -1795,19 +1794,19 @@ def _run_dynamics(m, X, V):
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
         rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -1839,18 +1838,18 @@ def _run_dynamics(m, X, V):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
-        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
-        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
-        rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
+        rus_w_2_in_axes3_x = inv_rus_v_1_t*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z
         # (rus-w_3) reciprocal vector 3
-        rus_w_3_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_y*rus_w_3_in_axes3_y
+        rus_w_3_in_axes3_x = inv_rus_v_1_t*rus_v_1_in_axes3_y*rus_w_3_in_axes3_y
         # (rus-qd_1) rate of joint 1
         rus_qd_1_t = (
-        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
         # (rus-qd_2) rate of joint 2
@@ -1876,27 +1875,24 @@ def _run_dynamics(m, X, V):
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
         rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_bias_t_2 = (
-        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
-            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
+        rus_bias_t = (
+        rus_d_2_in_axes3_x*rus_omega_1_in_axes3_y - rus_omega_1_in_axes3_x*rus_r_1_in_axes3_y
         )
-        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_2 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
+        rus_bias_t_2*rus_omega_2_in_axes3_y - rus_bias_t*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
+        rus_bias_t*rus_omega_1_in_axes3_x - rus_bias_t_2*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
+            rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x*rus_r_1_in_axes3_z -
+            rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y*rus_r_1_in_axes3_z
         )
         # (rus-qdd_1_o) remainder of: acceleration of joint 1
-        rus_qdd_1_o = inv_rus_v_1_t_2*rus_bias_in_axes3_x
+        rus_qdd_1_o = inv_rus_v_1_t*rus_bias_in_axes3_x
         # (rus-qdd_3_o) remainder of: acceleration of joint 3
         rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_bias_in_axes3_y + rus_qdd_1_o*rus_v_1_in_axes3_y)
         # (rus-alpha_2_o) remainder of: angular acceleration of link 2
@@ -1958,7 +1954,7 @@ def _run_dynamics(m, X, V):
         # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z
         rus_d_Gamma_3_in_axes3_x = (
-        rus_h_3_in_spec3_z - inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz -
+        rus_h_3_in_spec3_z - inv_rus_v_1_t*(rus_J_3_in_axes2_yz -
             rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z - rus_d_Gamma_3_t*rus_v_1_in_axes3_y)
         )
         # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
@@ -1971,7 +1967,7 @@ def _run_dynamics(m, X, V):
         rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_z
         rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*rus_v_1_in_axes3_y
         rus_d_Gamma_2_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_3_in_axes1_zz) -
+        inv_rus_v_1_t*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_3_in_axes1_zz) -
             rus_d_Gamma_2_t
         )
         rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_4 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
@@ -1986,7 +1982,7 @@ def _run_dynamics(m, X, V):
         rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z
         # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rus_d_Gamma_1_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_1_in_spec1_zz -
+        inv_rus_v_1_t*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_1_in_spec1_zz -
             rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t
         )
         # (rus-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -2000,24 +1996,28 @@ def _run_dynamics(m, X, V):
         rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rus_d_c_in_axes3_xx = (
-        inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
+        inv_rus_v_1_t*rus_d_Gamma_1_in_axes3_x - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
             rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
-            rus_h_3_in_spec3_y*(inv_rus_v_1_t_2*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x) -
+            rus_h_3_in_spec3_y*(inv_rus_v_1_t*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x) -
             rus_h_3_in_spec3_z*rus_w_3_in_axes3_x
         )
         rus_d_c_in_axes3_xy = (
-        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y - rus_d_phi_3_in_axes3_xy -
+        inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_y - rus_d_phi_3_in_axes3_xy -
             rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x -
             rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_x
         )
         rus_d_c_in_axes3_xz = (
-        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_alpha_3_t*rus_h_3_in_spec3_y -
+        inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_z + rus_d_alpha_3_t*rus_h_3_in_spec3_y -
             rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
             rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x
         )
+        rus_d_c_in_axes3_zz = (
+        rus_e_1_in_axes3_x*rus_h_3_in_spec3_z*rus_w_2_in_axes3_z -
+            rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z - rus_d_alpha_3_t*rus_h_3_in_spec3_x
+        )
         # (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rus_c_o_in_axes3_x = (
-        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*rus_v_1_in_axes3_y -
+        rus_c_t + inv_rus_v_1_t*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*rus_v_1_in_axes3_y -
             rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y
         )
@@ -2032,11 +2032,7 @@ def _run_dynamics(m, X, V):
         # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
         rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
         rus_Q_t_2 = 0.5*rus_Q_t
-        rus_Q_t_3 = (
-        rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z +
-            rus_d_alpha_3_t*rus_h_3_in_spec3_x -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z*rus_w_2_in_axes3_z
-        )
+        rus_Q_t_3 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_zz
         rus_Q_t_4 = 0.5*rus_Q_t_3
         rus_Q_t_5 = (
         axis_y_rus_axes3_x*rus_Q_t_2 + axis_z_rus_axes3_x*rus_d_G_in_axes3_zy -
@@ -2055,6 +2051,11 @@ def _run_dynamics(m, X, V):
         rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 - axis_x_rus_axes3_z*rus_d_c_in_axes3_xz
         rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_8
         rus_Q_xx = 2.0*rus_Q_t_11 - rus_d_c_in_axes3_xx
+        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 + axis_z_rus_axes3_y*rus_Q_t_9
+        rus_Q_yy = 2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
+        rus_Q_t_13 = (
+        rus_Q_xx + rus_Q_yy + rus_d_c_in_axes3_xx + rus_d_c_in_axes3_yy + rus_d_c_in_axes3_zz
+        )
         rus_Q_xy = (
         axis_y_rus_axes3_x*rus_Q_t_6 + axis_y_rus_axes3_y*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_9
             + axis_z_rus_axes3_y*rus_Q_t_8
@@ -2063,14 +2064,10 @@ def _run_dynamics(m, X, V):
         axis_y_rus_axes3_x*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_5 +
             axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8
         )
-        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 + axis_z_rus_axes3_y*rus_Q_t_9
-        rus_Q_yy = 2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
         rus_Q_yz = (
         axis_y_rus_axes3_y*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_6 +
             axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9
         )
-        rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 + axis_z_rus_axes3_z*rus_Q_t_10
-        rus_Q_zz = 2.0*rus_Q_t_13 - rus_d_c_in_axes3_xx
         # (rus-U) velocity and gravity terms of the leg force
         rus_U_x = (
         -axis_x_rus_axes3_x*rus_c_o_in_axes3_x - axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
@@ -2086,8 +2083,9 @@ def _run_dynamics(m, X, V):
         )
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (M_tt) translational block of M
         M_tt_rus_xx += rus_Q_xx
@@ -2095,7 +2093,7 @@ def _run_dynamics(m, X, V):
         M_tt_xz += rus_Q_xz
         M_tt_rus_yy += rus_Q_yy
         M_tt_yz += rus_Q_yz
-        M_tt_rus_zz += rus_Q_zz
+        M_tt_t += rus_Q_t_13
         # (Z_t) translational part of Z
         Z_t_rus_x += rus_U_x
         Z_t_rus_y += rus_U_y
@@ -2107,7 +2105,7 @@ def _run_dynamics(m, X, V):
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rus_xx + m_star
     M_tt_yy = M_tt_rus_yy + m_star
-    M_tt_zz = M_tt_rus_zz + m_star
+    M_tt_zz = m_star - M_tt_t
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_rus_x
     Z_t_y = Z_p_y + Z_t_rus_y
@@ -2129,7 +2127,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 513 mul, 321 add, 12 div, 6 sqrt, 0 trig
+# M: 483 mul, 315 add, 12 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2143,7 +2141,7 @@ def _run_M(m, X):
     t_z = X_2
     ok = True
     out_M = m.zeros("M")
-    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_rus_zz = [0.0] * 6
+    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_t = [0.0] * 6
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
@@ -2202,19 +2200,19 @@ def _run_M(m, X):
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
         rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -2246,18 +2244,18 @@ def _run_M(m, X):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
-        rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
+        rus_w_2_in_axes3_x = inv_rus_v_1_t*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z
         # (rus-w_3) reciprocal vector 3
-        rus_w_3_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_y*rus_w_3_in_axes3_y
+        rus_w_3_in_axes3_x = inv_rus_v_1_t*rus_v_1_in_axes3_y*rus_w_3_in_axes3_y
         # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
         rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z
         # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z
         rus_d_Gamma_3_in_axes3_x = (
-        rus_h_3_in_spec3_z - inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz -
+        rus_h_3_in_spec3_z - inv_rus_v_1_t*(rus_J_3_in_axes2_yz -
             rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z - rus_d_Gamma_3_t*rus_v_1_in_axes3_y)
         )
         # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
@@ -2270,43 +2268,43 @@ def _run_M(m, X):
         rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_z
         rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*rus_v_1_in_axes3_y
         rus_d_Gamma_2_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_3_in_axes1_zz) -
+        inv_rus_v_1_t*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_3_in_axes1_zz) -
             rus_d_Gamma_2_t
         )
         rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_4 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
         rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_3 - rus_d_Gamma_2_t_2
         # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rus_d_Gamma_1_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_1_in_spec1_zz -
+        inv_rus_v_1_t*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_1_in_spec1_zz -
             rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t
         )
         # (rus-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_d_G_in_axes3_zy = rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_z
         # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rus_d_c_in_axes3_xx = (
-        inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
+        inv_rus_v_1_t*rus_d_Gamma_1_in_axes3_x - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
             rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
-            rus_h_3_in_spec3_y*(inv_rus_v_1_t_2*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x) -
+            rus_h_3_in_spec3_y*(inv_rus_v_1_t*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x) -
             rus_h_3_in_spec3_z*rus_w_3_in_axes3_x
         )
         rus_d_c_in_axes3_xy = (
-        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y - rus_d_phi_3_in_axes3_xy -
+        inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_y - rus_d_phi_3_in_axes3_xy -
             rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x -
             rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_x
         )
         rus_d_c_in_axes3_xz = (
-        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_alpha_3_t*rus_h_3_in_spec3_y -
+        inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_z + rus_d_alpha_3_t*rus_h_3_in_spec3_y -
             rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
             rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x
+        )
+        rus_d_c_in_axes3_zz = (
+        rus_e_1_in_axes3_x*rus_h_3_in_spec3_z*rus_w_2_in_axes3_z -
+            rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z - rus_d_alpha_3_t*rus_h_3_in_spec3_x
         )
         # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
         rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
         rus_Q_t_2 = 0.5*rus_Q_t
-        rus_Q_t_3 = (
-        rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z +
-            rus_d_alpha_3_t*rus_h_3_in_spec3_x -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z*rus_w_2_in_axes3_z
-        )
+        rus_Q_t_3 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_zz
         rus_Q_t_4 = 0.5*rus_Q_t_3
         rus_Q_t_5 = (
         axis_y_rus_axes3_x*rus_Q_t_2 + axis_z_rus_axes3_x*rus_d_G_in_axes3_zy -
@@ -2325,6 +2323,11 @@ def _run_M(m, X):
         rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 - axis_x_rus_axes3_z*rus_d_c_in_axes3_xz
         rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_8
         rus_Q_xx = 2.0*rus_Q_t_11 - rus_d_c_in_axes3_xx
+        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 + axis_z_rus_axes3_y*rus_Q_t_9
+        rus_Q_yy = 2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
+        rus_Q_t_13 = (
+        rus_Q_xx + rus_Q_yy + rus_d_c_in_axes3_xx + rus_d_c_in_axes3_yy + rus_d_c_in_axes3_zz
+        )
         rus_Q_xy = (
         axis_y_rus_axes3_x*rus_Q_t_6 + axis_y_rus_axes3_y*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_9
             + axis_z_rus_axes3_y*rus_Q_t_8
@@ -2333,18 +2336,15 @@ def _run_M(m, X):
         axis_y_rus_axes3_x*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_5 +
             axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8
         )
-        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 + axis_z_rus_axes3_y*rus_Q_t_9
-        rus_Q_yy = 2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
         rus_Q_yz = (
         axis_y_rus_axes3_y*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_6 +
             axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9
         )
-        rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 + axis_z_rus_axes3_z*rus_Q_t_10
-        rus_Q_zz = 2.0*rus_Q_t_13 - rus_d_c_in_axes3_xx
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (M_tt) translational block of M
         M_tt_rus_xx += rus_Q_xx
@@ -2352,11 +2352,11 @@ def _run_M(m, X):
         M_tt_xz += rus_Q_xz
         M_tt_rus_yy += rus_Q_yy
         M_tt_yz += rus_Q_yz
-        M_tt_rus_zz += rus_Q_zz
+        M_tt_t += rus_Q_t_13
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rus_xx + m_star
     M_tt_yy = M_tt_rus_yy + m_star
-    M_tt_zz = M_tt_rus_zz + m_star
+    M_tt_zz = m_star - M_tt_t
     # (M_tt) translational block of M
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
@@ -2370,7 +2370,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 594 mul, 378 add, 12 div, 6 sqrt, 0 trig
+# Z: 561 mul, 366 add, 12 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -2442,19 +2442,19 @@ def _run_Z(m, X, V):
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
         rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -2486,12 +2486,12 @@ def _run_Z(m, X, V):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
         # (rus-qd_1) rate of joint 1
         rus_qd_1_t = (
-        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
         # (rus-qd_2) rate of joint 2
@@ -2517,27 +2517,24 @@ def _run_Z(m, X, V):
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
         rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_bias_t_2 = (
-        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
-            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
+        rus_bias_t = (
+        rus_d_2_in_axes3_x*rus_omega_1_in_axes3_y - rus_omega_1_in_axes3_x*rus_r_1_in_axes3_y
         )
-        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_2 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
+        rus_bias_t_2*rus_omega_2_in_axes3_y - rus_bias_t*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
+        rus_bias_t*rus_omega_1_in_axes3_x - rus_bias_t_2*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
+            rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x*rus_r_1_in_axes3_z -
+            rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y*rus_r_1_in_axes3_z
         )
         # (rus-qdd_1_o) remainder of: acceleration of joint 1
-        rus_qdd_1_o = inv_rus_v_1_t_2*rus_bias_in_axes3_x
+        rus_qdd_1_o = inv_rus_v_1_t*rus_bias_in_axes3_x
         # (rus-qdd_3_o) remainder of: acceleration of joint 3
         rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_bias_in_axes3_y + rus_qdd_1_o*rus_v_1_in_axes3_y)
         # (rus-alpha_2_o) remainder of: angular acceleration of link 2
@@ -2611,7 +2608,7 @@ def _run_Z(m, X, V):
         rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         # (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rus_c_o_in_axes3_x = (
-        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*rus_v_1_in_axes3_y -
+        rus_c_t + inv_rus_v_1_t*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*rus_v_1_in_axes3_y -
             rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y
         )
@@ -2638,8 +2635,9 @@ def _run_Z(m, X, V):
         )
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (Z_t) translational part of Z
         Z_t_rus_x += rus_U_x
@@ -2656,7 +2654,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 240 mul, 120 add, 9 div, 6 sqrt, 0 trig
+# H: 228 mul, 114 add, 9 div, 6 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -2715,12 +2713,9 @@ def _run_H(m, X):
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
         rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -2752,14 +2747,14 @@ def _run_H(m, X):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
-        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
-        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_1_t) >
+            _TOLERANCE * rus_size)
         )
         # (rus-w_1) reciprocal vector 1
         out_H[_H_rus[0][leg]] = -rus_w_1_t_7
@@ -2768,7 +2763,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 633 mul, 417 add, 12 div, 6 sqrt, 0 trig
+# required: 600 mul, 405 add, 12 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -2856,19 +2851,19 @@ def _run_required(m, X, V, A):
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
         rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -2900,15 +2895,15 @@ def _run_required(m, X, V, A):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
-        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
-        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
         # (rus-qd_1) rate of joint 1
         rus_qd_1_t = (
-        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
         # (rus-qd_2) rate of joint 2
@@ -2944,31 +2939,28 @@ def _run_required(m, X, V, A):
         axis_z_rus_axes3_x*t_ddot_x + axis_z_rus_axes3_y*t_ddot_y + axis_z_rus_axes3_z*t_ddot_z
         )
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_bias_t_2 = (
-        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
-            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
+        rus_bias_t = (
+        rus_d_2_in_axes3_x*rus_omega_1_in_axes3_y - rus_omega_1_in_axes3_x*rus_r_1_in_axes3_y
         )
-        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_2 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
+        rus_bias_t_2*rus_omega_2_in_axes3_y - rus_bias_t*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
+        rus_bias_t*rus_omega_1_in_axes3_x - rus_bias_t_2*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
+            rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x*rus_r_1_in_axes3_z -
+            rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y*rus_r_1_in_axes3_z
         )
         # (rus-rel) acceleration of the connection point left to the joint accelerations
         rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x
         rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y
         rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
-        rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
+        rus_qdd_1_t = inv_rus_v_1_t*rus_rel_in_axes3_x
         # (rus-qdd_2) acceleration of joint 2
         rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z)
         # (rus-qdd_3) acceleration of joint 3
@@ -3041,7 +3033,7 @@ def _run_required(m, X, V, A):
         rus_c_t_2 = rus_h_3_in_spec3_z*(rus_mu_3_t + rus_mu_3_t_3)
         rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         rus_c_in_axes3_x = (
-        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_in_axes1_z - rus_G_in_axes3_y*rus_v_1_in_axes3_y -
+        rus_c_t + inv_rus_v_1_t*(rus_N_1_in_axes1_z - rus_G_in_axes3_y*rus_v_1_in_axes3_y -
             rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y
         )
@@ -3067,8 +3059,9 @@ def _run_required(m, X, V, A):
         )
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += rus_c_x
@@ -3167,7 +3160,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 303 mul, 156 add, 12 div, 6 sqrt, 0 trig
+# joint_rates: 282 mul, 144 add, 12 div, 6 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -3234,19 +3227,19 @@ def _run_joint_rates(m, X, V):
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
         rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -3278,12 +3271,12 @@ def _run_joint_rates(m, X, V):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
         # (rus-qd_1) rate of joint 1
         rus_qd_1_t = (
-        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
         # (rus-qd_2) rate of joint 2
@@ -3299,8 +3292,9 @@ def _run_joint_rates(m, X, V):
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (rus-qd_1) rate of joint 1
         out_qd[_qd_rus[0][leg]] = -rus_qd_1_t
@@ -3311,7 +3305,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 414 mul, 213 add, 12 div, 6 sqrt, 0 trig
+# joint_accelerations: 381 mul, 201 add, 12 div, 6 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -3385,19 +3379,19 @@ def _run_joint_accelerations(m, X, V, A):
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
         rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -3429,12 +3423,12 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
         # (rus-qd_1) rate of joint 1
         rus_qd_1_t = (
-        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
         # (rus-qd_2) rate of joint 2
@@ -3468,39 +3462,37 @@ def _run_joint_accelerations(m, X, V, A):
         axis_z_rus_axes3_x*t_ddot_x + axis_z_rus_axes3_y*t_ddot_y + axis_z_rus_axes3_z*t_ddot_z
         )
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_bias_t_2 = (
-        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
-            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
+        rus_bias_t = (
+        rus_d_2_in_axes3_x*rus_omega_1_in_axes3_y - rus_omega_1_in_axes3_x*rus_r_1_in_axes3_y
         )
-        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_2 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
+        rus_bias_t_2*rus_omega_2_in_axes3_y - rus_bias_t*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
+        rus_bias_t*rus_omega_1_in_axes3_x - rus_bias_t_2*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
+            rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x*rus_r_1_in_axes3_z -
+            rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y*rus_r_1_in_axes3_z
         )
         # (rus-rel) acceleration of the connection point left to the joint accelerations
         rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x
         rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y
         rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
-        rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
+        rus_qdd_1_t = inv_rus_v_1_t*rus_rel_in_axes3_x
         # (rus-qdd_2) acceleration of joint 2
         rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z)
         # (rus-qdd_3) acceleration of joint 3
         rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y - rus_qdd_1_t*rus_v_1_in_axes3_y)
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (rus-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rus[0][leg]] = -rus_qdd_1_t
@@ -3511,7 +3503,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 639 mul, 411 add, 12 div, 6 sqrt, 0 trig
+# legs: 606 mul, 399 add, 12 div, 6 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -3591,19 +3583,19 @@ def _run_legs(m, X, V, A):
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
         rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -3635,15 +3627,15 @@ def _run_legs(m, X, V, A):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
-        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
-        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
         # (rus-qd_1) rate of joint 1
         rus_qd_1_t = (
-        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
         # (rus-qd_2) rate of joint 2
@@ -3679,31 +3671,28 @@ def _run_legs(m, X, V, A):
         axis_z_rus_axes3_x*t_ddot_x + axis_z_rus_axes3_y*t_ddot_y + axis_z_rus_axes3_z*t_ddot_z
         )
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_bias_t_2 = (
-        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
-            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
+        rus_bias_t = (
+        rus_d_2_in_axes3_x*rus_omega_1_in_axes3_y - rus_omega_1_in_axes3_x*rus_r_1_in_axes3_y
         )
-        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_2 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
+        rus_bias_t_2*rus_omega_2_in_axes3_y - rus_bias_t*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
+        rus_bias_t*rus_omega_1_in_axes3_x - rus_bias_t_2*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
+            rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x*rus_r_1_in_axes3_z -
+            rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y*rus_r_1_in_axes3_z
         )
         # (rus-rel) acceleration of the connection point left to the joint accelerations
         rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x
         rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y
         rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
-        rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
+        rus_qdd_1_t = inv_rus_v_1_t*rus_rel_in_axes3_x
         # (rus-qdd_2) acceleration of joint 2
         rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z)
         # (rus-qdd_3) acceleration of joint 3
@@ -3776,7 +3765,7 @@ def _run_legs(m, X, V, A):
         rus_c_t_2 = rus_h_3_in_spec3_z*(rus_mu_3_t + rus_mu_3_t_3)
         rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         rus_c_in_axes3_x = (
-        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_in_axes1_z - rus_G_in_axes3_y*rus_v_1_in_axes3_y -
+        rus_c_t + inv_rus_v_1_t*(rus_N_1_in_axes1_z - rus_G_in_axes3_y*rus_v_1_in_axes3_y -
             rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y
         )
@@ -3806,8 +3795,9 @@ def _run_legs(m, X, V, A):
         )
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (rus-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_rus[0][leg]] = rus_c_true_x
@@ -3918,7 +3908,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 262 mul, 147 add, 9 div, 13 sqrt, 0 trig
+# condition: 253 mul, 141 add, 9 div, 13 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -3988,12 +3978,11 @@ def _run_condition(m, X):
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
         rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -4025,15 +4014,15 @@ def _run_condition(m, X):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
-        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
-        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_pivot_size = abs(rus_J_3_t_10)
         rus_pivot_size_2 = abs(rus_J_3_t_15)
-        rus_pivot_size_3 = abs(rus_r_1_t)
-        rus_pivot_size_4 = abs(rus_v_1_t_2)
+        rus_pivot_size_3 = abs(rus_v_2_in_axes3_z)
+        rus_pivot_size_4 = abs(rus_v_1_t)
         rus_least_pivots = (
         least(least(least(sqrt(inv_rus_rho2_1_t*rus_pivot_size), inv_rus_size*rus_pivot_size_3),
             inv_rus_size*rus_pivot_size_4), sqrt(inv_rus_size_t_3*rus_pivot_size_2))
@@ -4047,8 +4036,8 @@ def _run_condition(m, X):
         )
         clear = (
         clear & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (abs(rus_J_3_t_15)
-            > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) > _TOLERANCE * rus_size) &
-            (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_2_in_axes3_z) > _TOLERANCE *
+            rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
         reached = reached & (rus_J_3_t_11 >= 0.0)
         # (spread) rms distance of the platform points from their centroid

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1557,14 +1568,14 @@ INLINE void stage_crank_legs_required(const prepared *m, size_t i, values_crank 
 }
 
 typedef struct {
-    real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2,
-        rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x,
-        rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
-        rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x, rrr_a_p_y, rrr_qd_1,
-        rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x, rrr_c_t, rrr_c_t_2,
-        rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx, rrr_Q_xy,
-        rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y, rrr_Z_a_t,
-        rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
+    real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2_t,
+        axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_d_2_in_axes2_x, rrr_r_1_in_axes2_y,
+        rrr_r_1_in_axes2_x, rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x,
+        rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x,
+        rrr_a_p_y, rrr_qd_1, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x,
+        rrr_c_t, rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2,
+        rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y,
+        rrr_Z_a_t, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1606,21 +1617,20 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
     v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    v->rrr_s_2 =
-        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    v->rrr_s_2_t =
+        m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    /* (rrr-S_dot) velocity of the connection point */
+    const real rrr_S_dot_t = v->rrr_c_1*v->rrr_s_2_t - v->rrr_c_2*v->rrr_s_1;
+    const real rrr_S_dot_t_2 = v->rrr_c_1*v->rrr_c_2 + v->rrr_s_1*v->rrr_s_2_t;
+    v->axis_y_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_xx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_xy[i];
+    v->axis_x_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_yx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_yy[i];
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*v->rrr_s_2;
-    const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
-        v->rrr_c_2*m->rrr_platform_joint_offset_x[i];
-    v->rrr_r_1_in_axes2_x = v->rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*v->rrr_s_2;
-    v->rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*v->rrr_s_2;
+    v->rrr_d_2_in_axes2_x = v->rrr_c_2*m->rrr_joint2_offset_x[i];
+    v->rrr_r_1_in_axes2_y = m->rrr_joint2_offset_x[i]*v->rrr_s_2_t;
+    v->rrr_r_1_in_axes2_x = m->rrr_platform_joint_offset_x[i] + v->rrr_d_2_in_axes2_x;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = v->rrr_c_2*v->rrr_s_1 + v->rrr_c_1*v->rrr_s_2;
-    const real rrr_w_1_t_2 = v->rrr_c_1*v->rrr_c_2 - v->rrr_s_1*v->rrr_s_2;
-    v->axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_xx[i]*rrr_w_1_t;
-    v->axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_yx[i]*rrr_w_1_t;
     v->rrr_w_1_in_axes2_x = -1/v->rrr_r_1_in_axes2_y;
     v->rrr_w_1_x = v->axis_x_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
     v->rrr_w_1_y = -v->axis_y_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
@@ -1653,31 +1663,30 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
 {
     /* (rrr-S_dot) velocity of the connection point */
     const real omega_z = V[2*w + j];
-    const real rrr_S_dot_t = omega_z*v->rrr_q_y;
-    const real rrr_S_dot_t_2 = omega_z*v->rrr_q_x;
+    const real rrr_S_dot_t_3 = omega_z*v->rrr_q_y;
+    const real rrr_S_dot_t_4 = omega_z*v->rrr_q_x;
     const real t_dot_x = V[0*w + j];
-    const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+    const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3;
     const real t_dot_y = V[1*w + j];
-    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_2;
+    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_4;
+    const real rrr_S_dot_in_axes2_x = v->axis_x_rrr_axes2_x*rrr_S_dot_x -
+        v->axis_y_rrr_axes2_x*rrr_S_dot_y;
     /* (rrr-qd_1) rate of joint 1 */
-    v->rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
-        v->axis_y_rrr_axes2_x*rrr_S_dot_y);
+    v->rrr_qd_1 = rrr_S_dot_in_axes2_x*v->rrr_w_1_in_axes2_x;
     /* (rrr-qd_2) rate of joint 2 */
     v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
         v->axis_y_rrr_axes2_x*rrr_S_dot_x - v->rrr_qd_1*v->rrr_r_1_in_axes2_x);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = v->rrr_qd_1*v->rrr_qd_1;
     /* (rrr-omega_2) angular velocity of link 2 */
     const real rrr_omega_2_in_axes2_z = v->rrr_qd_1 + v->rrr_qd_2;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-u_1) centripetal acceleration of the connection point */
-    v->rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
-    v->rrr_u_1_t = omega_z*rrr_S_dot_t;
+    v->rrr_u_1_x = -omega_z*rrr_S_dot_t_4;
+    v->rrr_u_1_t = omega_z*rrr_S_dot_t_3;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrr_bias_in_axes2_y = rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
-    v->rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
+    v->rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*v->rrr_qd_1;
+    v->rrr_bias_in_axes2_x = -v->rrr_d_2_in_axes2_x*v->rrr_qd_1*v->rrr_qd_1 -
+        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
     v->rrr_c_t = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i];
@@ -1732,8 +1741,8 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
     const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
         v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
     v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
-    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
     v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
     /* (M_ta) coupling block of M */
     v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
     v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
@@ -1818,6 +1827,45 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
         v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
     v->rrr_c_in_axes2_y = v->rrr_c_t_2 - rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] -
         rrr_G_in_axes2_y;
+}
+
+INLINE void any_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
+    status_flags *t)
+{
+    H[1*w + k] = o[0*count + at];
+    H[(NU + 1)*w + k] = o[1*count + at];
+    H[(2*NU + 1)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
+}
+
+INLINE void any_place_crank(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
+INLINE void any_place_rrr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
+}
+
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, values
+    *v, real *s)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->W_p_xx;
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
@@ -1942,17 +1990,6 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void dynamics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[1*w + k] = o[0*count + at];
-    H[(NU + 1)*w + k] = o[1*count + at];
-    H[(2*NU + 1)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
-}
-
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
@@ -2007,9 +2044,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, status_flags *t)
 {
-    real s[8] = {0}, sums[9] = {0};
-    real terms_crank[9*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)] = {0};
-    real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[8] CLEARED, sums[9] CLEARED;
+    real terms_crank[9*LEGS(LEGS_OF_crank)] CLEARED, o_crank[9*LEGS(LEGS_OF_crank)] CLEARED;
+    real terms_rrr[9*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     dynamics_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
@@ -2025,7 +2062,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        dynamics_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2062,7 +2099,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2099,11 +2136,6 @@ INLINE void M_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void M_place_crank(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2122,12 +2154,6 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -2166,9 +2192,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[5] = {0}, sums[6] = {0};
-    real terms_crank[6*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
-    real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[5] CLEARED, sums[6] CLEARED;
+    real terms_crank[6*LEGS(LEGS_OF_crank)] CLEARED, o_crank[LEGS(LEGS_OF_crank)] CLEARED;
+    real terms_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     M_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
@@ -2178,13 +2204,13 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
         M_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
-        M_place_crank(0, i, LEGS(LEGS_OF_crank), o_crank, t);
+        any_place_crank(0, i, LEGS(LEGS_OF_crank), o_crank, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        M_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2210,7 +2236,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_crank(m, LANES, i, k, k, LANES, 1, s, X, sums, o_crank);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_crank(k, k, LANES, o_crank, t);
+            any_place_crank(k, k, LANES, o_crank, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2218,7 +2244,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2227,16 +2253,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, values
-    *v, real *s)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->W_p_xx;
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
     stage_V_X(v);
@@ -2266,11 +2282,6 @@ INLINE void Z_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void Z_place_crank(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
@@ -2286,12 +2297,6 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -2317,11 +2322,11 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[6] = {0}, sums[3] = {0};
-    real terms_crank[3*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[6] CLEARED, sums[3] CLEARED;
+    real terms_crank[3*LEGS(LEGS_OF_crank)] CLEARED, o_crank[LEGS(LEGS_OF_crank)] CLEARED;
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, V, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         Z_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, V, terms_crank, o_crank);
     }
@@ -2329,13 +2334,13 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
         Z_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
-        Z_place_crank(0, i, LEGS(LEGS_OF_crank), o_crank, t);
+        any_place_crank(0, i, LEGS(LEGS_OF_crank), o_crank, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        Z_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2354,7 +2359,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, V, &v, s);
+        any_before(m, LANES, k, X, V, &v, s);
         Z_between(m, LANES, k, &v, s);
     }
     clear(sums, 3*LANES);
@@ -2363,7 +2368,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_crank(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_crank);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_crank(k, k, LANES, o_crank, t);
+            any_place_crank(k, k, LANES, o_crank, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2371,7 +2376,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2380,13 +2385,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void H_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2428,24 +2426,13 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void H_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    status_flags *t)
-{
-    H[1*w + k] = o[0*count + at];
-    H[(NU + 1)*w + k] = o[1*count + at];
-    H[(2*NU + 1)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[3] = {0};
-    real o_crank[5*LEGS(LEGS_OF_crank)] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[3] CLEARED;
+    real o_crank[5*LEGS(LEGS_OF_crank)] CLEARED;
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         H_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
@@ -2456,7 +2443,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
         H_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, H, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        H_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
 }
 
@@ -2468,7 +2455,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_rrr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2483,19 +2470,12 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
             H_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void Hk_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2523,10 +2503,10 @@ INLINE void Hk_place_crank(size_t w, size_t k, size_t at, size_t count, const re
 
 APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
-    real s[3] = {0};
-    real o_crank[5*LEGS(LEGS_OF_crank)] = {0};
+    real s[3] CLEARED;
+    real o_crank[5*LEGS(LEGS_OF_crank)] CLEARED;
     values v;
-    Hk_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         Hk_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
@@ -2542,7 +2522,7 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, st
     real o_crank[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Hk_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2555,16 +2535,6 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, st
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, values *v, real *s)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->W_p_xx;
-}
-
 INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, const real *V, real *o)
 {
@@ -2596,10 +2566,10 @@ INLINE void constraint_bias_place_crank(size_t w, size_t k, size_t at, size_t co
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, status_flags *t)
 {
-    real s[3] = {0};
-    real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
+    real s[3] CLEARED;
+    real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
     values v;
-    constraint_bias_before(m, 1, 0, X, V, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         constraint_bias_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, o_crank);
     }
@@ -2615,7 +2585,7 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
     real o_crank[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        constraint_bias_before(m, LANES, k, X, V, &v, s);
+        any_before(m, LANES, k, X, V, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2628,16 +2598,6 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    values *v, real *s)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->W_p_xx;
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *A, values *v, real
     *s)
 {
@@ -2769,16 +2729,22 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, status_flags *t)
 {
-    real s[6] = {0}, sums[5] = {0};
-    real terms_crank[5*LEGS(LEGS_OF_crank)] = {0}, o_crank[7*LEGS(LEGS_OF_crank)] = {0};
-    real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[6] CLEARED, sums[5] CLEARED;
+    real terms_crank[5*LEGS(LEGS_OF_crank)] = {0}, o_crank[7*LEGS(LEGS_OF_crank)] CLEARED;
+    real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, V, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
-        required_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, V, A, terms_crank, o_crank);
+    any_before(m, 1, 0, X, V, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_crank); i += BESIDE(LEGS_OF_crank)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_crank); ++k) {
+            required_legs_crank(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_crank), 0, s, X, V, A,
+                terms_crank, o_crank);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        required_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            required_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr,
+                o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         required_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, H, Hk, t);
@@ -2806,7 +2772,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, &v, s);
+        any_before(m, LANES, k, X, V, &v, s);
         required_between(m, LANES, k, A, &v, s);
     }
     clear(sums, 5*LANES);
@@ -2832,14 +2798,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void inverse_kinematics_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, real *o)
 {
@@ -2870,7 +2828,7 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     /* (rrr-q_1) displacement of joint 1 */
     const real rrr_q_1 = angle(v.rrr_s_1, v.rrr_c_1);
     /* (rrr-q_2) displacement of joint 2 */
-    const real rrr_q_2 = angle(v.rrr_s_2, v.rrr_c_2);
+    const real rrr_q_2 = angle(-v.rrr_s_2_t, v.rrr_c_2);
     /* (rrr-q_1) */
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
@@ -2892,11 +2850,11 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t c
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[3] = {0};
-    real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[3] CLEARED;
+    real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         inverse_kinematics_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
@@ -2919,7 +2877,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2940,16 +2898,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, const real
-    *V, values *v, real *s)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->W_p_xx;
-}
-
 INLINE void joint_rates_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, const real *V, real *o)
 {
@@ -3000,11 +2948,11 @@ INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, c
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[3] = {0};
-    real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[3] CLEARED;
+    real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, V, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         joint_rates_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, o_crank);
     }
@@ -3027,7 +2975,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, V, &v, s);
+        any_before(m, LANES, k, X, V, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3048,16 +2996,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, values *v, real *s)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->W_p_xx;
-}
-
 INLINE void joint_accelerations_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3112,11 +3050,11 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[3] = {0};
-    real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[3] CLEARED;
+    real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         joint_accelerations_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, A, o_crank);
     }
@@ -3139,7 +3077,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, &v, s);
+        any_before(m, LANES, k, X, V, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3160,14 +3098,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void constraints_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -3193,10 +3123,10 @@ INLINE void constraints_place_crank(size_t w, size_t k, size_t at, size_t count,
 
 APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
 {
-    real s[3] = {0};
-    real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
+    real s[3] CLEARED;
+    real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
     values v;
-    constraints_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         constraints_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
@@ -3212,7 +3142,7 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
     real o_crank[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        constraints_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3225,16 +3155,6 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    values *v, real *s)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->W_p_xx;
-}
-
 INLINE void legs_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3313,19 +3233,23 @@ INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const re
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
-    real s[3] = {0};
-    real o_crank[7*LEGS(LEGS_OF_crank)] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[3] CLEARED;
+    real o_crank[7*LEGS(LEGS_OF_crank)] CLEARED;
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 6);
     clear(constraint_direction, 3*NC);
     values v;
-    legs_before(m, 1, 0, X, V, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
-        legs_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, A, o_crank);
+    any_before(m, 1, 0, X, V, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_crank); i += BESIDE(LEGS_OF_crank)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_crank); ++k) {
+            legs_legs_crank(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_crank), s, X, V, A, o_crank);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        legs_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            legs_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         legs_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, leg_force, actuator, constraint_direction, t);
@@ -3336,14 +3260,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3377,12 +3293,6 @@ INLINE void potential_legs_crank(const prepared *m, size_t w, size_t i, size_t j
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void potential_place_crank(size_t k, size_t at, size_t count, const real *o, status_flags
-    *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -3392,20 +3302,14 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrr_potential_t_3 = v.rrr_g_in_axes1_x*(m->rrr_h_1_in_spec1_x[i] +
         v.rrr_c_2*m->rrr_h_2_in_spec2_x[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
-        m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
+        m->rrr_potential_t_2[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2_t) +
         v.rrr_g_in_axes1_y*(m->rrr_h_1_in_spec1_y[i] + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
-        m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
+        m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3421,25 +3325,31 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[4] = {0}, sums[2] = {0};
-    real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[4] CLEARED, sums[2] CLEARED;
+    real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] CLEARED;
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
-        potential_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, terms_crank, o_crank);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_crank); i += BESIDE(LEGS_OF_crank)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_crank); ++k) {
+            potential_legs_crank(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_crank), 0, s, X, terms_crank,
+                o_crank);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        potential_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            potential_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr,
+                o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
-        potential_place_crank(0, i, LEGS(LEGS_OF_crank), o_crank, t);
+        any_place_crank(0, i, LEGS(LEGS_OF_crank), o_crank, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        potential_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -3568,9 +3478,9 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, status_flags *t)
 {
-    real s[3] = {0}, sums[2] = {0};
-    real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
+    real s[3] CLEARED, sums[2] CLEARED;
+    real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)] CLEARED;
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3819,7 +3729,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
 int fivebar_offset_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    real Hk[NV*NC] = {0}, constraint_bias[1] = {0};
+    real Hk[NV*NC] CLEARED, constraint_bias[1] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3908,8 +3818,8 @@ int fivebar_offset_inverse_dynamics(const prepared *m, const real *X, const real
     *A, const real *wrench, real *tau_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
-        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
+    real required[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, subtract_1[NV] CLEARED,
+        beside_1[NV*NV] = {0}, solve_1[NV] CLEARED, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4044,9 +3954,10 @@ int fivebar_offset_forward_dynamics(const prepared *m, const real *X, const real
     *tau, const real *wrench, real *A_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, constraint_bias[1] = {0},
-        times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, negative_1[1] = {0}, join_1[4] =
-        {0}, solve_1[(NV + NC)] = {0}, unsure_solve_1[1] = {0}, work[(NV + NC)*(PADDED(NV + NC))];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, constraint_bias[1]
+        CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED, subtract_1[NV] CLEARED, negative_1[1] CLEARED,
+        join_1[4] = {0}, solve_1[(NV + NC)] CLEARED, unsure_solve_1[1] = {0}, work[(NV +
+        NC)*(PADDED(NV + NC))];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4134,8 +4045,8 @@ int fivebar_offset_leg_reactions(const prepared *m, const real *X, const real *V
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0};
-    real split_1[2] = {0}, split_2[1] = {0}, leg_force[3*NL] = {0}, actuator[6] = {0},
-        constraint_direction[3*NC] = {0}, add_forces_1[3*NL] = {0}, forces[NL*(NL + NC)] = {0};
+    real split_1[2] = {0}, split_2[1] = {0}, leg_force[3*NL] CLEARED, actuator[6] CLEARED,
+        constraint_direction[3*NC] CLEARED, add_forces_1[3*NL] CLEARED, forces[NL*(NL + NC)] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4156,7 +4067,7 @@ int fivebar_offset_leg_reactions(const prepared *m, const real *X, const real *V
 int fivebar_offset_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4177,8 +4088,8 @@ int fivebar_offset_condition(const prepared *m, const real *X, real *sigma_out, 
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED,
+        choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4212,8 +4123,9 @@ int fivebar_offset_condition_constrained(const prepared *m, const real *X, real 
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED,
+        beside_1[NV*NV] = {0}, choose_length_1[1] CLEARED, divide_rows_1[NV*NV] CLEARED, sigma[NV] =
+        {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4246,11 +4158,11 @@ int fivebar_offset_manipulability(const prepared *m, const real *X, real *measur
 {
     static const size_t places_divide_rows_1[] = {2};
     static const size_t places_divide_rows_2[] = {2};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
-        subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, subtract_2[1] =
-        {0}, choose_length_2[1] = {0}, divide_rows_2[NV*NC] = {0}, transposed_1[NC*NV] = {0},
-        null_basis_1[2*NV] = {0}, transposed_2[2*NV] = {0}, product_1[NU*NU] = {0},
-        singular_values_1[NU] = {0}, measure[1] = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
+        CLEARED, subtract_1[1] CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED,
+        subtract_2[1] CLEARED, choose_length_2[1] CLEARED, divide_rows_2[NV*NC] CLEARED,
+        transposed_1[NC*NV] = {0}, null_basis_1[2*NV] = {0}, transposed_2[2*NV] = {0},
+        product_1[NU*NU] = {0}, singular_values_1[NU] = {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4297,9 +4209,10 @@ int fivebar_offset_singularity_distance(const prepared *m, const real *X, real *
     real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
-        beside_1[NV*NV] = {0}, subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] =
-        {0}, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
+        CLEARED, beside_1[NV*NV] = {0}, subtract_1[1] CLEARED, choose_length_1[1] CLEARED,
+        divide_rows_1[NV*NV] CLEARED, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] =
+        {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4331,8 +4244,8 @@ int fivebar_offset_singularity_distance(const prepared *m, const real *X, real *
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, subtract_1[NU] = {0}, wrap_turns_1[NU] = {0}, constraints[1] = {0},
-        negative_1[1] = {0}, residual[3] = {0};
+    real q[NJ] CLEARED, subtract_1[NU] CLEARED, wrap_turns_1[NU] CLEARED, constraints[1] CLEARED,
+        negative_1[1] CLEARED, residual[3] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4354,7 +4267,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, slope[NV*NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4422,7 +4335,7 @@ int fivebar_offset_forward_kinematics(const prepared *m, const real *q_actuated,
 
 static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
 {
-    real constraints[1] = {0}, residual[NC] = {0};
+    real constraints[1] CLEARED, residual[NC] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4505,7 +4418,7 @@ int fivebar_offset_dissipation(const prepared *m, const real *X, const real *V, 
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -4518,7 +4431,7 @@ int fivebar_offset_dissipation(const prepared *m, const real *X, const real *V, 
 
 int fivebar_offset_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4530,7 +4443,7 @@ int fivebar_offset_momentum(const prepared *m, const real *X, const real *V, rea
 int fivebar_offset_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4545,7 +4458,7 @@ int fivebar_offset_joint_margins(const prepared *m, const real *X, real *margins
 
 int fivebar_offset_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4559,7 +4472,7 @@ int fivebar_offset_within_limits(const prepared *m, const real *X, real *within_
 
 int fivebar_offset_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4570,7 +4483,7 @@ int fivebar_offset_actuator_positions(const prepared *m, const real *X, real *q_
 
 int fivebar_offset_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0};
+    real qd_of_joint_rates[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4582,7 +4495,7 @@ int fivebar_offset_actuator_rates(const prepared *m, const real *X, const real *
 int fivebar_offset_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4594,7 +4507,7 @@ int fivebar_offset_actuator_accelerations(const prepared *m, const real *X, cons
 int fivebar_offset_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4638,7 +4551,7 @@ int fivebar_offset_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int fivebar_offset_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real X_moved[NQ] = {0};
+    real X_moved[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -4651,7 +4564,7 @@ int fivebar_offset_retract(const real *X, const real *step, real *X_moved_out)
 int fivebar_offset_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
-    real subtract_1[NQ] = {0}, step[NV] = {0};
+    real subtract_1[NQ] CLEARED, step[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -4667,7 +4580,7 @@ int fivebar_offset_difference(const real *X0, const real *X1, real *step_out)
 
 int fivebar_offset_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -150,20 +150,20 @@ extern const char *const fivebar_offset_ACTUATOR_NAMES[FIVEBAR_OFFSET_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_model *model);
 
-/* Inertia matrix M. 106 mul, 80 add, 3 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 102 mul, 78 add, 3 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int fivebar_offset_M(const fivebar_offset_model *model, const fivebar_offset_real *X,
     fivebar_offset_real *M);
 size_t fivebar_offset_M_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *M, int *status);
 
-/* Velocity and gravity terms Z. 142 mul, 89 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 137 mul, 87 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int fivebar_offset_Z(const fivebar_offset_model *model, const fivebar_offset_real *X, const
     fivebar_offset_real *V, fivebar_offset_real *Z);
 size_t fivebar_offset_Z_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 70 mul, 35 add, 3 div, 2 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 67 mul, 33 add, 3 div, 2 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int fivebar_offset_H(const fivebar_offset_model *model, const fivebar_offset_real *X,
     fivebar_offset_real *H);
@@ -198,15 +198,15 @@ int fivebar_offset_inverse_kinematics(const fivebar_offset_model *model, const f
 size_t fivebar_offset_inverse_kinematics_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *q, int *status);
 
-/* Rates of all joints. 78 mul, 42 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 74 mul, 40 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int fivebar_offset_joint_rates(const fivebar_offset_model *model, const fivebar_offset_real *X,
     const fivebar_offset_real *V, fivebar_offset_real *rates);
 size_t fivebar_offset_joint_rates_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *rates, int *status);
 
-/* Accelerations of all joints. 100 mul, 55 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
-   (NV). Out: accelerations (NJ). */
+/* Accelerations of all joints. 94 mul, 53 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A (NV).
+   Out: accelerations (NJ). */
 int fivebar_offset_joint_accelerations(const fivebar_offset_model *model, const
     fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
     fivebar_offset_real *accelerations);
@@ -214,7 +214,7 @@ size_t fivebar_offset_joint_accelerations_batch(const fivebar_offset_model *mode
     fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
     fivebar_offset_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 201 mul, 141 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 196 mul, 139 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int fivebar_offset_dynamics(const fivebar_offset_model *model, const fivebar_offset_real *X, const
     fivebar_offset_real *V, fivebar_offset_real *M, fivebar_offset_real *Z, fivebar_offset_real
@@ -223,7 +223,7 @@ size_t fivebar_offset_dynamics_batch(const fivebar_offset_model *model, size_t n
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *M,
     fivebar_offset_real *Z, fivebar_offset_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 165 mul, 105 add, 3 div, 2 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 160 mul, 103 add, 3 div, 2 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU), lambda (NC). */
 int fivebar_offset_inverse_dynamics(const fivebar_offset_model *model, const fivebar_offset_real
@@ -234,7 +234,7 @@ size_t fivebar_offset_inverse_dynamics_batch(const fivebar_offset_model *model, 
     fivebar_offset_real *wrench, fivebar_offset_real *tau, fivebar_offset_real *lambda, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 201 mul, 141 add, 3 div, 2 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 196 mul, 139 add, 3 div, 2 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV), lambda (NC). */
 int fivebar_offset_forward_dynamics(const fivebar_offset_model *model, const fivebar_offset_real
@@ -255,7 +255,7 @@ size_t fivebar_offset_complete_acceleration_batch(const fivebar_offset_model *mo
     const fivebar_offset_real *wrench, fivebar_offset_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 143 mul, 80 add, 3 div, 2 sqrt, 0 trig; inverse dynamics apart. In:
+   forces of inverse_dynamics. 138 mul, 78 add, 3 div, 2 sqrt, 0 trig; inverse dynamics apart. In:
    X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (2 x 3). */
 int fivebar_offset_leg_reactions(const fivebar_offset_model *model, const fivebar_offset_real *X,
     const fivebar_offset_real *V, const fivebar_offset_real *A, const fivebar_offset_real *wrench,
@@ -275,7 +275,7 @@ size_t fivebar_offset_energy_batch(const fivebar_offset_model *model, size_t n, 
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 83 mul, 46 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   legs. 80 mul, 44 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
    (2), legs (2). */
 int fivebar_offset_condition(const fivebar_offset_model *model, const fivebar_offset_real *X,
     fivebar_offset_real *sigma, fivebar_offset_real *legs);
@@ -284,7 +284,7 @@ size_t fivebar_offset_condition_batch(const fivebar_offset_model *model, size_t 
 
 /* The same with the singular values of [H Hk], which inverse dynamics solves. The length is the
    rms distance of the platform points from their centroid, or where they coincide the rms size of
-   the legs. 83 mul, 46 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   the legs. 80 mul, 44 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (3), legs (2). */
 int fivebar_offset_condition_constrained(const fivebar_offset_model *model, const
     fivebar_offset_real *X, fivebar_offset_real *sigma, fivebar_offset_real *legs);
@@ -294,7 +294,7 @@ size_t fivebar_offset_condition_constrained_batch(const fivebar_offset_model *mo
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
    the least over the largest of them. Of N^T H, N an orthonormal basis of the motions that
-   constraints leave. 83 mul, 46 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X
+   constraints leave. 80 mul, 44 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X
    (NQ). Out: measure (1), isotropy (1). */
 int fivebar_offset_manipulability(const fivebar_offset_model *model, const fivebar_offset_real *X,
     fivebar_offset_real *measure, fivebar_offset_real *isotropy);
@@ -302,8 +302,8 @@ size_t fivebar_offset_manipulability_batch(const fivebar_offset_model *model, si
     fivebar_offset_real *X, fivebar_offset_real *measure, fivebar_offset_real *isotropy, int
     *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 83
-   mul, 46 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 80
+   mul, 44 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
    legs (1). */
 int fivebar_offset_singularity_distance(const fivebar_offset_model *model, const
     fivebar_offset_real *X, fivebar_offset_real *actuators, fivebar_offset_real *legs);
@@ -335,7 +335,7 @@ size_t fivebar_offset_dissipation_batch(const fivebar_offset_model *model, size_
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *dissipation, int
     *status);
 
-/* Generalised momentum M V. 106 mul, 80 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 102 mul, 78 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int fivebar_offset_momentum(const fivebar_offset_model *model, const fivebar_offset_real *X, const
     fivebar_offset_real *V, fivebar_offset_real *momentum);
@@ -364,14 +364,14 @@ int fivebar_offset_actuator_positions(const fivebar_offset_model *model, const f
 size_t fivebar_offset_actuator_positions_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 78 mul, 42 add, 3 div, 2 sqrt, 0 trig. In: X
+/* Rates of the actuated joints, in the order of tau. 74 mul, 40 add, 3 div, 2 sqrt, 0 trig. In: X
    (NQ), V (NV). Out: rates (NU). */
 int fivebar_offset_actuator_rates(const fivebar_offset_model *model, const fivebar_offset_real *X,
     const fivebar_offset_real *V, fivebar_offset_real *rates);
 size_t fivebar_offset_actuator_rates_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 100 mul, 55 add, 3 div, 2 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 94 mul, 53 add, 3 div, 2 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int fivebar_offset_actuator_accelerations(const fivebar_offset_model *model, const
     fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,

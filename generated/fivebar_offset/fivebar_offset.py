@@ -1898,7 +1898,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 201 mul, 141 add, 3 div, 2 sqrt, 0 trig
+# dynamics: 196 mul, 139 add, 3 div, 2 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2100,53 +2100,50 @@ def _run_dynamics(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
         rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = (
-        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
             rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
@@ -2214,8 +2211,8 @@ def _run_dynamics(m, X, V):
         rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         # (rrr-U) velocity and gravity terms of the leg force
         rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
         rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y
@@ -2285,7 +2282,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H, out_Hk, out_constraint_bias,)
 
 
-# M: 106 mul, 80 add, 3 div, 2 sqrt, 0 trig
+# M: 102 mul, 78 add, 3 div, 2 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -2394,19 +2391,19 @@ def _run_M(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
@@ -2434,8 +2431,8 @@ def _run_M(m, X):
         rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         # (M_ta) coupling block of M
         rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
         rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
@@ -2478,7 +2475,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 142 mul, 89 add, 3 div, 2 sqrt, 0 trig
+# Z: 137 mul, 87 add, 3 div, 2 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2609,49 +2606,46 @@ def _run_Z(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = (
-        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
             rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
@@ -2722,7 +2716,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 70 mul, 35 add, 3 div, 2 sqrt, 0 trig
+# H: 67 mul, 33 add, 3 div, 2 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -2811,18 +2805,17 @@ def _run_H(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
         rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
@@ -2974,7 +2967,7 @@ def _run_constraint_bias(m, X, V):
     return ok, (out_constraint_bias,)
 
 
-# required: 165 mul, 105 add, 3 div, 2 sqrt, 0 trig
+# required: 160 mul, 103 add, 3 div, 2 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3142,45 +3135,41 @@ def _run_required(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
         rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = (
-        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
             rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
@@ -3190,9 +3179,10 @@ def _run_required(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
@@ -3347,11 +3337,11 @@ def _run_inverse_kinematics(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-q_2) displacement of joint 2
-        rrr_q_2 = atan2(rrr_s_2, rrr_c_2)
+        rrr_q_2 = atan2(-rrr_s_2_t, rrr_c_2)
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
@@ -3360,7 +3350,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 78 mul, 42 add, 3 div, 2 sqrt, 0 trig
+# joint_rates: 74 mul, 40 add, 3 div, 2 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -3458,29 +3448,27 @@ def _run_joint_rates(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = (
-        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
@@ -3497,7 +3485,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 100 mul, 55 add, 3 div, 2 sqrt, 0 trig
+# joint_accelerations: 94 mul, 53 add, 3 div, 2 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3606,43 +3594,37 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = (
-        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
             rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
-        # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
@@ -3652,9 +3634,10 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
@@ -3725,7 +3708,7 @@ def _run_constraints(m, X):
     return ok, (out_constraints,)
 
 
-# legs: 143 mul, 80 add, 3 div, 2 sqrt, 0 trig
+# legs: 138 mul, 78 add, 3 div, 2 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3864,45 +3847,41 @@ def _run_legs(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
         rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = (
-        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
             rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
@@ -3912,9 +3891,10 @@ def _run_legs(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
@@ -4072,8 +4052,8 @@ def _run_potential(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
@@ -4081,10 +4061,10 @@ def _run_potential(m, X):
         # (potential) potential energy
         rrr_potential_t_3 = (
         rrr_g_in_axes1_x*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
-            rrr_h_2_in_spec2_y*rrr_s_2) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
-            rrr_c_2*rrr_h_2_in_spec2_y + rrr_h_2_in_spec2_x*rrr_s_2 +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 - rrr_potential_t*rrr_s_1))
+            rrr_h_2_in_spec2_y*rrr_s_2_t + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
+            rrr_potential_t_2*rrr_s_1)) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
+            rrr_c_2*rrr_h_2_in_spec2_y + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*rrr_s_1) - rrr_h_2_in_spec2_x*rrr_s_2_t)
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
@@ -4096,7 +4076,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 83 mul, 46 add, 3 div, 5 sqrt, 0 trig
+# condition: 80 mul, 44 add, 3 div, 5 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -4219,18 +4199,17 @@ def _run_condition(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
         rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1088,7 +1099,7 @@ typedef struct {
     real rpr_q_2_t, rpr_q_2, inv_rpr_q_2, axis_x_rpr_axes1_x, axis_x_rpr_axes1_y, rpr_c_1, rpr_s_1,
         rpr_g_in_axes1_x, rpr_g_in_axes1_y, rpr_S_ddot_in_axes1_x, rpr_S_ddot_in_axes1_y,
         rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_t, rpr_bias_in_axes1_y, rpr_phi_2_t, rpr_c_t,
-        rpr_qdd_1, rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_U_x, rpr_U_y, rpr_acc_2_in_axes1_x,
+        rpr_qdd_1, rpr_Q_xx, rpr_Q_yy, rpr_Q_xy, rpr_U_x, rpr_U_y, rpr_acc_2_in_axes1_x,
         rpr_acc_2_in_axes1_y, rpr_phi_2_in_axes1_x, rpr_c_in_axes1_y;
 } values_rpr;
 
@@ -1176,8 +1187,8 @@ INLINE void stage_rpr_M_dynamics(const prepared *m, size_t i, values_rpr *v)
     const real rpr_Q_t_3 = v->axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy +
         v->axis_x_rpr_axes1_x*rpr_Q_t;
     v->rpr_Q_xx = -2*v->axis_x_rpr_axes1_y*rpr_Q_t_2;
-    v->rpr_Q_xy = v->axis_x_rpr_axes1_x*rpr_Q_t_2 + v->axis_x_rpr_axes1_y*rpr_Q_t_3;
     v->rpr_Q_yy = -2*v->axis_x_rpr_axes1_x*rpr_Q_t_3;
+    v->rpr_Q_xy = v->axis_x_rpr_axes1_x*rpr_Q_t_2 + v->axis_x_rpr_axes1_y*rpr_Q_t_3;
 }
 
 INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
@@ -1227,6 +1238,20 @@ INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
         v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
 }
 
+INLINE void any_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    t->singular[k] += o[2*count + at];
+    t->total[k] += o[3*count + at];
+}
+
+INLINE void any_place_rpr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1251,15 +1276,6 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     o[3*count + k] = v.axis_x_rpr_axes1_x + v.axis_x_rpr_axes1_y;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
-}
-
-INLINE void dynamics_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    t->singular[k] += o[2*count + at];
-    t->total[k] += o[3*count + at];
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
@@ -1290,13 +1306,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real sums[5] = {0};
-    real terms_rpr[5*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
+    real sums[5] CLEARED;
+    real terms_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         dynamics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, X, V, terms_rpr, o_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        dynamics_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
+        any_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
     for (size_t n = 0; n < 5; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
@@ -1315,7 +1331,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rpr(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
+            any_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1338,11 +1354,6 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2);
 }
 
-INLINE void M_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
     *t)
 {
@@ -1362,13 +1373,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
+    real sums[3] CLEARED;
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         M_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        M_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
+        any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
@@ -1387,7 +1398,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rpr(m, LANES, i, k, k, LANES, 1, X, sums, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rpr(k, k, LANES, o_rpr, t);
+            any_place_rpr_2(k, k, LANES, o_rpr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1410,11 +1421,6 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2);
 }
 
-INLINE void Z_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
     *t)
 {
@@ -1431,13 +1437,13 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real sums[2] = {0};
-    real terms_rpr[2*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
+    real sums[2] CLEARED;
+    real terms_rpr[2*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         Z_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, X, V, terms_rpr, o_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        Z_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
+        any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
@@ -1456,7 +1462,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rpr(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rpr(k, k, LANES, o_rpr, t);
+            any_place_rpr_2(k, k, LANES, o_rpr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1478,23 +1484,14 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2);
 }
 
-INLINE void H_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    t->singular[k] += o[2*count + at];
-    t->total[k] += o[3*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
+    real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         H_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), X, o_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        H_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
+        any_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
 }
 
@@ -1507,7 +1504,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
             H_legs_rpr(m, LANES, i, k, k, LANES, X, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
+            any_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
         }
     }
 }
@@ -1577,10 +1574,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[2] = {0}, sums[2] = {0};
-    real terms_rpr[2*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[3*LEGS(LEGS_OF_rpr)] = {0};
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
-        required_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, X, V, A, terms_rpr, o_rpr);
+    real s[2] CLEARED, sums[2] CLEARED;
+    real terms_rpr[2*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED;
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
+            required_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), 0, X, V, A, terms_rpr,
+                o_rpr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         required_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
@@ -1642,7 +1642,7 @@ INLINE void inverse_kinematics_place_rpr(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
+    real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         inverse_kinematics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), X, o_rpr);
     }
@@ -1693,7 +1693,7 @@ INLINE void joint_rates_place_rpr(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
+    real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_rates_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), X, V, o_rpr);
     }
@@ -1748,7 +1748,7 @@ INLINE void joint_accelerations_place_rpr(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
+    real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_accelerations_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), X, V, A, o_rpr);
     }
@@ -1813,11 +1813,13 @@ INLINE void legs_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
+    real o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 6);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
-        legs_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), X, V, A, o_rpr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
+            legs_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), X, V, A, o_rpr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         legs_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, leg_force, actuator, t);
@@ -1852,11 +1854,6 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
         LEAST_2);
 }
 
-INLINE void potential_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -1869,13 +1866,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[1] = {0}, sums[1] = {0};
-    real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
-        potential_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
+    real s[1] CLEARED, sums[1] CLEARED;
+    real terms_rpr[LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
+            potential_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        potential_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
+        any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
@@ -1944,8 +1943,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real sums[1] = {0};
-    real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
+    real sums[1] CLEARED;
+    real terms_rpr[LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
     clear(reach, NL);
     condition_before(m, 1, 0, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
@@ -2173,7 +2172,7 @@ int fivebar_prismatic_inverse_dynamics(const prepared *m, const real *X, const r
     *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -2222,8 +2221,8 @@ int fivebar_prismatic_forward_dynamics(const prepared *m, const real *X, const r
     *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -2292,7 +2291,7 @@ int fivebar_prismatic_leg_reactions(const prepared *m, const real *X, const real
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[6] = {0}, forces[3*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[6] CLEARED, forces[3*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -2309,7 +2308,7 @@ int fivebar_prismatic_leg_reactions(const prepared *m, const real *X, const real
 int fivebar_prismatic_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
     real *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2327,7 +2326,7 @@ int fivebar_prismatic_energy(const prepared *m, const real *X, const real *V, re
 
 int fivebar_prismatic_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, reach[NL] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, reach[NL] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2347,8 +2346,8 @@ int fivebar_prismatic_condition(const prepared *m, const real *X, real *sigma_ou
 int fivebar_prismatic_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
-        {0}, measure[1] = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
+        singular_values_1[NV] = {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2369,8 +2368,8 @@ int fivebar_prismatic_manipulability(const prepared *m, const real *X, real *mea
 int fivebar_prismatic_singularity_distance(const prepared *m, const real *X, real *actuators_out,
     real *legs_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
-        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
+        singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2391,7 +2390,7 @@ int fivebar_prismatic_singularity_distance(const prepared *m, const real *X, rea
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_1[2] = {0}, residual[NU] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_1[2] = {0}, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -2476,7 +2475,7 @@ int fivebar_prismatic_dissipation(const prepared *m, const real *X, const real *
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -2490,7 +2489,7 @@ int fivebar_prismatic_dissipation(const prepared *m, const real *X, const real *
 int fivebar_prismatic_momentum(const prepared *m, const real *X, const real *V, real
     *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2502,7 +2501,7 @@ int fivebar_prismatic_momentum(const prepared *m, const real *X, const real *V, 
 int fivebar_prismatic_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2517,7 +2516,7 @@ int fivebar_prismatic_joint_margins(const prepared *m, const real *X, real *marg
 
 int fivebar_prismatic_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2531,7 +2530,7 @@ int fivebar_prismatic_within_limits(const prepared *m, const real *X, real *with
 
 int fivebar_prismatic_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2543,7 +2542,7 @@ int fivebar_prismatic_actuator_positions(const prepared *m, const real *X, real 
 int fivebar_prismatic_actuator_rates(const prepared *m, const real *X, const real *V, real
     *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2555,7 +2554,7 @@ int fivebar_prismatic_actuator_rates(const prepared *m, const real *X, const rea
 int fivebar_prismatic_actuator_accelerations(const prepared *m, const real *X, const real *V,
     const real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -2567,7 +2566,7 @@ int fivebar_prismatic_actuator_accelerations(const prepared *m, const real *X, c
 int fivebar_prismatic_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -2579,7 +2578,7 @@ int fivebar_prismatic_power(const prepared *m, const real *X, const real *V, con
 
 int fivebar_prismatic_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real X_moved[NQ] = {0};
+    real X_moved[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -2591,7 +2590,7 @@ int fivebar_prismatic_retract(const real *X, const real *step, real *X_moved_out
 
 int fivebar_prismatic_difference(const real *X0, const real *X1, real *step_out)
 {
-    real step[NV] = {0};
+    real step[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -2603,7 +2602,7 @@ int fivebar_prismatic_difference(const real *X0, const real *X1, real *step_out)
 
 int fivebar_prismatic_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real subtract_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    real subtract_1[NQ] CLEARED, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -701,7 +712,8 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
         const real rrr_leg1_w_2_in_axes2_y = 1/rrr_leg1_platform_joint_offset_x;
         /* (rrr_leg1-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
            about its reference point */
-        const real rrr_leg1_d_phi_2_t = rrr_leg1_h_2_in_spec2_y*rrr_leg1_w_2_in_axes2_y;
+        const real rrr_leg1_d_phi_2_in_axes2_xy =
+            -rrr_leg1_h_2_in_spec2_y*rrr_leg1_w_2_in_axes2_y;
         /* (rrr_leg1-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last
            link about the connection point */
         const real rrr_leg1_Jc_1_in_axes1_zz = rrr_leg1_J_1_in_spec1_zz +
@@ -752,7 +764,7 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
         KEEP_OF_LEG(rrr_leg1_d_Gamma_2_in_axes2_y);
         KEEP_OF_LEG(rrr_leg1_d_Gamma_2_t);
         KEEP_OF_LEG(rrr_leg1_d_c_in_axes2_yy);
-        KEEP_OF_LEG(rrr_leg1_d_phi_2_t);
+        KEEP_OF_LEG(rrr_leg1_d_phi_2_in_axes2_xy);
         KEEP_OF_LEG(rrr_leg1_h_1_in_spec1_x);
         KEEP_OF_LEG(rrr_leg1_h_1_in_spec1_y);
         KEEP_OF_LEG(rrr_leg1_h_2_in_spec2_x);
@@ -835,7 +847,7 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
         const real rrr_w_2_in_axes2_y = 1/rrr_platform_joint_offset_x;
         /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
            about its reference point */
-        const real rrr_d_phi_2_t = rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
+        const real rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
         /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
            about the connection point */
         const real rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz;
@@ -881,7 +893,7 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
         KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
         KEEP_OF_LEG(rrr_d_Gamma_2_t);
         KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
-        KEEP_OF_LEG(rrr_d_phi_2_t);
+        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy);
         KEEP_OF_LEG(rrr_h_1_in_spec1_x);
         KEEP_OF_LEG(rrr_h_1_in_spec1_y);
         KEEP_OF_LEG(rrr_h_2_in_spec2_x);
@@ -1555,13 +1567,13 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2, rrr_r_1_in_axes2_x,
-        rrr_r_1_in_axes2_y, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_w_1_in_axes2_x, rrr_w_1_x,
-        rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y,
-        rrr_mu_1_t_3, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qd_1, rrr_qd_2, rrr_bias_t,
-        rrr_bias_in_axes2_x, rrr_c_t, rrr_c_t_2, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx, rrr_Q_xy, rrr_Q_yy,
-        rrr_U_x, rrr_U_y, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x,
-        rrr_c_in_axes2_y;
+    real rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2_t, axis_y_rrr_axes2_x,
+        axis_x_rrr_axes2_x, rrr_d_2_in_axes2_x, rrr_r_1_in_axes2_y, rrr_r_1_in_axes2_x,
+        inv_rrr_r_1_in_axes2_y, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
+        rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_S_ddot_in_axes2_x,
+        rrr_S_ddot_in_axes2_y, rrr_qd_1_t, rrr_qd_2, rrr_bias_t, rrr_bias_in_axes2_x, rrr_c_t,
+        rrr_c_t_2, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_U_x, rrr_U_y,
+        rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_rrr
@@ -1599,24 +1611,23 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
     v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    v->rrr_s_2 =
-        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    v->rrr_s_2_t =
+        m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    /* (rrr-S_dot) velocity of the connection point */
+    const real rrr_S_dot_t = v->rrr_c_1*v->rrr_s_2_t - v->rrr_c_2*v->rrr_s_1;
+    const real rrr_S_dot_t_2 = v->rrr_c_1*v->rrr_c_2 + v->rrr_s_1*v->rrr_s_2_t;
+    v->axis_y_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_xx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_xy[i];
+    v->axis_x_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_yx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_yy[i];
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*v->rrr_s_2;
-    const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
-        v->rrr_c_2*m->rrr_platform_joint_offset_x[i];
-    v->rrr_r_1_in_axes2_x = v->rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*v->rrr_s_2;
-    v->rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*v->rrr_s_2;
+    v->rrr_d_2_in_axes2_x = v->rrr_c_2*m->rrr_joint2_offset_x[i];
+    v->rrr_r_1_in_axes2_y = m->rrr_joint2_offset_x[i]*v->rrr_s_2_t;
+    v->rrr_r_1_in_axes2_x = m->rrr_platform_joint_offset_x[i] + v->rrr_d_2_in_axes2_x;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = v->rrr_c_2*v->rrr_s_1 + v->rrr_c_1*v->rrr_s_2;
-    const real rrr_w_1_t_2 = v->rrr_c_1*v->rrr_c_2 - v->rrr_s_1*v->rrr_s_2;
-    v->axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_xx[i]*rrr_w_1_t;
-    v->axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_yx[i]*rrr_w_1_t;
-    v->rrr_w_1_in_axes2_x = -1/v->rrr_r_1_in_axes2_y;
-    v->rrr_w_1_x = v->axis_x_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
-    v->rrr_w_1_y = -v->axis_y_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
+    v->inv_rrr_r_1_in_axes2_y = 1/v->rrr_r_1_in_axes2_y;
+    v->rrr_w_1_x = -v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
+    v->rrr_w_1_y = v->axis_y_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
     v->rrr_g_in_axes2_x = v->axis_x_rrr_axes2_x*m->gravity_x -
         v->axis_y_rrr_axes2_x*m->gravity_y;
@@ -1643,24 +1654,24 @@ INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
 INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rrr *v)
 {
-    /* (rrr-qd_1) rate of joint 1 */
+    /* (rrr-S_dot) velocity of the connection point */
     const real t_dot_x = V[0*w + j];
     const real t_dot_y = V[1*w + j];
-    v->rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*t_dot_x -
-        v->axis_y_rrr_axes2_x*t_dot_y);
+    const real rrr_S_dot_in_axes2_x = v->axis_x_rrr_axes2_x*t_dot_x -
+        v->axis_y_rrr_axes2_x*t_dot_y;
+    /* (rrr-qd_1) rate of joint 1 */
+    v->rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x;
     /* (rrr-qd_2) rate of joint 2 */
     v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*t_dot_y +
-        v->axis_y_rrr_axes2_x*t_dot_x - v->rrr_qd_1*v->rrr_r_1_in_axes2_x);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_in_axes1_xx = -v->rrr_qd_1*v->rrr_qd_1;
+        v->axis_y_rrr_axes2_x*t_dot_x + v->rrr_qd_1_t*v->rrr_r_1_in_axes2_x);
     /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = v->rrr_qd_1 + v->rrr_qd_2;
+    const real rrr_omega_2_in_axes2_z = v->rrr_qd_2 - v->rrr_qd_1_t;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrr_bias_t = rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
-    v->rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
+    v->rrr_bias_t = rrr_S_dot_in_axes2_x*v->rrr_qd_1_t;
+    v->rrr_bias_in_axes2_x = -v->rrr_d_2_in_axes2_x*v->rrr_qd_1_t*v->rrr_qd_1_t -
+        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
     v->rrr_c_t = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i];
@@ -1673,7 +1684,7 @@ INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
     const real rrr_rel_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
     const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y + v->rrr_bias_t;
     /* (rrr-qdd_1) acceleration of joint 1 */
-    v->rrr_qdd_1_t = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    v->rrr_qdd_1_t = v->inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
     /* (rrr-qdd_2) acceleration of joint 2 */
     v->rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
         v->rrr_qdd_1_t*v->rrr_r_1_in_axes2_x);
@@ -1683,39 +1694,38 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-w_2) reciprocal vector 2 */
     const real rrr_w_2_in_axes2_x =
-        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
+        v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
-    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_J_2_in_spec2_zz[i] -
-        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
+    const real rrr_d_Gamma_2_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(m->rrr_J_2_in_spec2_zz[i] - rrr_d_Gamma_2_t_2);
     /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_Jc_1_in_axes1_zz[i] -
-        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
+    const real rrr_d_Gamma_1_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(m->rrr_Jc_1_in_axes1_zz[i] - rrr_d_Gamma_2_t_2);
     /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
-        m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
-        m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
+    const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*m->rrr_d_Gamma_2_in_axes2_y[i]
+        - m->rrr_d_phi_2_in_axes2_xy[i] - m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v->rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x)
-        - m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_1_in_axes2_x*v->rrr_w_1_in_axes2_x -
-        rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+    const real rrr_Q_t = v->inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x -
+        m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x +
+        m->rrr_h_2_in_spec2_y[i]*(rrr_w_2_in_axes2_x - v->inv_rrr_r_1_in_axes2_y);
     const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
     const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
         v->axis_x_rrr_axes2_x*rrr_Q_t_2;
     const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
         v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
     v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
-    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
     v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
 }
 
 INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rrr_qdd_1_o = -v->rrr_bias_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    const real rrr_qdd_1_o = v->inv_rrr_r_1_in_axes2_y*v->rrr_bias_in_axes2_x;
     /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real rrr_alpha_2_o_in_axes2_z = rrr_qdd_1_o +
         m->rrr_w_2_in_axes2_y[i]*(v->rrr_bias_t - rrr_qdd_1_o*v->rrr_r_1_in_axes2_x);
@@ -1737,8 +1747,8 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
     /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real rrr_c_o_in_axes2_x = v->rrr_c_t +
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
-        v->rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v->rrr_r_1_in_axes2_x -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v->rrr_r_1_in_axes2_x -
         rrr_N_1_o_in_axes1_z);
     const real rrr_c_o_in_axes2_y = v->rrr_c_t_2 -
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
@@ -1771,22 +1781,23 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
     const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
-        v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+    v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
+        rrr_N_1_in_axes1_z);
     v->rrr_c_in_axes2_y = v->rrr_c_t_2 - rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] -
         rrr_G_in_axes2_y;
 }
 
 typedef struct {
-    real rrr_leg1_rho2_1, rrr_leg1_disc_1, rrr_leg1_c_1, rrr_leg1_s_1, rrr_leg1_c_2, rrr_leg1_s_2,
-        rrr_leg1_r_1_in_axes2_x, rrr_leg1_r_1_in_axes2_y, axis_y_rrr_leg1_axes2_x,
-        axis_x_rrr_leg1_axes2_x, rrr_leg1_w_1_in_axes2_x, rrr_leg1_w_1_x, rrr_leg1_w_1_y,
-        rrr_leg1_w_2_in_axes2_x, rrr_leg1_w_2_x, rrr_leg1_w_2_y, rrr_leg1_g_in_axes2_x,
-        rrr_leg1_g_in_axes2_y, rrr_leg1_g_in_axes1_x, rrr_leg1_g_in_axes1_y, rrr_leg1_mu_1_t_3,
-        rrr_leg1_S_ddot_in_axes2_x, rrr_leg1_S_ddot_in_axes2_y, rrr_leg1_qd_1, rrr_leg1_qd_2,
-        rrr_leg1_bias_t, rrr_leg1_bias_in_axes2_x, rrr_leg1_c_t, rrr_leg1_c_t_2, rrr_leg1_qdd_1_t,
-        rrr_leg1_qdd_2, rrr_leg1_Q_xx, rrr_leg1_Q_xy, rrr_leg1_Q_yy, rrr_leg1_U_x, rrr_leg1_U_y,
-        rrr_leg1_acc_2_in_axes2_x, rrr_leg1_acc_2_in_axes2_y, rrr_leg1_c_in_axes2_x,
+    real rrr_leg1_rho2_1, rrr_leg1_disc_1, rrr_leg1_c_1, rrr_leg1_s_1, rrr_leg1_c_2, rrr_leg1_s_2_t,
+        axis_y_rrr_leg1_axes2_x, axis_x_rrr_leg1_axes2_x, rrr_leg1_d_2_in_axes2_x,
+        rrr_leg1_r_1_in_axes2_y, rrr_leg1_r_1_in_axes2_x, inv_rrr_leg1_r_1_in_axes2_y, rrr_leg1_w_1_x,
+        rrr_leg1_w_1_y, rrr_leg1_w_2_in_axes2_x, rrr_leg1_w_2_x, rrr_leg1_w_2_y,
+        rrr_leg1_g_in_axes2_x, rrr_leg1_g_in_axes2_y, rrr_leg1_g_in_axes1_x, rrr_leg1_g_in_axes1_y,
+        rrr_leg1_mu_1_t_3, rrr_leg1_S_ddot_in_axes2_x, rrr_leg1_S_ddot_in_axes2_y, rrr_leg1_qd_1_t,
+        rrr_leg1_qd_2, rrr_leg1_bias_t, rrr_leg1_bias_in_axes2_x, rrr_leg1_c_t, rrr_leg1_c_t_2,
+        rrr_leg1_qdd_1_t, rrr_leg1_qdd_2, rrr_leg1_Q_xx, rrr_leg1_Q_yy, rrr_leg1_Q_xy, rrr_leg1_U_x,
+        rrr_leg1_U_y, rrr_leg1_acc_2_in_axes2_x, rrr_leg1_acc_2_in_axes2_y, rrr_leg1_c_in_axes2_x,
         rrr_leg1_c_in_axes2_y;
 } values_rrr_leg1;
 
@@ -1834,32 +1845,29 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     v->rrr_leg1_c_2 =
         m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_platform_joint_offset_x[i]*rrr_leg1_x_2_in_axes1_x;
     /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-    v->rrr_leg1_s_2 =
-        -m->inv_rrr_leg1_size_t[i]*m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_joint2_offset_x[i]*m->rrr_leg1_platform_joint_offset_x[i]*rrr_leg1_root_1;
+    v->rrr_leg1_s_2_t =
+        m->inv_rrr_leg1_size_t[i]*m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_joint2_offset_x[i]*m->rrr_leg1_platform_joint_offset_x[i]*rrr_leg1_root_1;
+    /* (rrr_leg1-S_dot) velocity of the connection point */
+    const real rrr_leg1_S_dot_t = v->rrr_leg1_c_1*v->rrr_leg1_s_2_t -
+        v->rrr_leg1_c_2*v->rrr_leg1_s_1;
+    const real rrr_leg1_S_dot_t_2 = v->rrr_leg1_c_1*v->rrr_leg1_c_2 +
+        v->rrr_leg1_s_1*v->rrr_leg1_s_2_t;
+    v->axis_y_rrr_leg1_axes2_x = rrr_leg1_S_dot_t*m->rrr_leg1_base_frame_xx[i] +
+        rrr_leg1_S_dot_t_2*m->rrr_leg1_base_frame_xy[i];
+    v->axis_x_rrr_leg1_axes2_x = rrr_leg1_S_dot_t*m->rrr_leg1_base_frame_yx[i] +
+        rrr_leg1_S_dot_t_2*m->rrr_leg1_base_frame_yy[i];
     /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_leg1_r_1_in_axes1_y =
-        m->rrr_leg1_platform_joint_offset_x[i]*v->rrr_leg1_s_2;
-    const real rrr_leg1_r_1_in_axes1_x = m->rrr_leg1_joint2_offset_x[i] +
-        v->rrr_leg1_c_2*m->rrr_leg1_platform_joint_offset_x[i];
-    v->rrr_leg1_r_1_in_axes2_x = v->rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-        rrr_leg1_r_1_in_axes1_y*v->rrr_leg1_s_2;
-    v->rrr_leg1_r_1_in_axes2_y = v->rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
-        rrr_leg1_r_1_in_axes1_x*v->rrr_leg1_s_2;
+    v->rrr_leg1_d_2_in_axes2_x = v->rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i];
+    v->rrr_leg1_r_1_in_axes2_y = m->rrr_leg1_joint2_offset_x[i]*v->rrr_leg1_s_2_t;
+    v->rrr_leg1_r_1_in_axes2_x = m->rrr_leg1_platform_joint_offset_x[i] +
+        v->rrr_leg1_d_2_in_axes2_x;
     /* (rrr_leg1-w_1) reciprocal vector 1 */
-    const real rrr_leg1_w_1_t = v->rrr_leg1_c_2*v->rrr_leg1_s_1 +
-        v->rrr_leg1_c_1*v->rrr_leg1_s_2;
-    const real rrr_leg1_w_1_t_2 = v->rrr_leg1_c_1*v->rrr_leg1_c_2 -
-        v->rrr_leg1_s_1*v->rrr_leg1_s_2;
-    v->axis_y_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_xy[i]*rrr_leg1_w_1_t_2 -
-        m->rrr_leg1_base_frame_xx[i]*rrr_leg1_w_1_t;
-    v->axis_x_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_yy[i]*rrr_leg1_w_1_t_2 -
-        m->rrr_leg1_base_frame_yx[i]*rrr_leg1_w_1_t;
-    v->rrr_leg1_w_1_in_axes2_x = -1/v->rrr_leg1_r_1_in_axes2_y;
-    v->rrr_leg1_w_1_x = v->axis_x_rrr_leg1_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
-    v->rrr_leg1_w_1_y = -v->axis_y_rrr_leg1_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
+    v->inv_rrr_leg1_r_1_in_axes2_y = 1/v->rrr_leg1_r_1_in_axes2_y;
+    v->rrr_leg1_w_1_x = -v->axis_x_rrr_leg1_axes2_x*v->inv_rrr_leg1_r_1_in_axes2_y;
+    v->rrr_leg1_w_1_y = v->axis_y_rrr_leg1_axes2_x*v->inv_rrr_leg1_r_1_in_axes2_y;
     /* (rrr_leg1-w_2) reciprocal vector 2 */
     v->rrr_leg1_w_2_in_axes2_x =
-        -v->rrr_leg1_r_1_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
+        v->inv_rrr_leg1_r_1_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
     v->rrr_leg1_w_2_x = v->axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] +
         v->axis_x_rrr_leg1_axes2_x*v->rrr_leg1_w_2_in_axes2_x;
     v->rrr_leg1_w_2_y = v->axis_x_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] -
@@ -1893,26 +1901,25 @@ INLINE void stage_rrr_leg1_A_X(size_t w, size_t j, const real *A, values_rrr_leg
 INLINE void stage_rrr_leg1_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rrr_leg1 *v)
 {
-    /* (rrr_leg1-qd_1) rate of joint 1 */
+    /* (rrr_leg1-S_dot) velocity of the connection point */
     const real t_dot_x = V[0*w + j];
     const real t_dot_y = V[1*w + j];
-    v->rrr_leg1_qd_1 = v->rrr_leg1_w_1_in_axes2_x*(v->axis_x_rrr_leg1_axes2_x*t_dot_x -
-        v->axis_y_rrr_leg1_axes2_x*t_dot_y);
+    const real rrr_leg1_S_dot_in_axes2_x = v->axis_x_rrr_leg1_axes2_x*t_dot_x -
+        v->axis_y_rrr_leg1_axes2_x*t_dot_y;
+    /* (rrr_leg1-qd_1) rate of joint 1 */
+    v->rrr_leg1_qd_1_t = v->inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x;
     /* (rrr_leg1-qd_2) rate of joint 2 */
     v->rrr_leg1_qd_2 = m->rrr_leg1_w_2_in_axes2_y[i]*(v->axis_x_rrr_leg1_axes2_x*t_dot_y +
-        v->axis_y_rrr_leg1_axes2_x*t_dot_x - v->rrr_leg1_qd_1*v->rrr_leg1_r_1_in_axes2_x);
-    /* (rrr_leg1-W_1) centripetal tensor of link 1 */
-    const real rrr_leg1_W_1_in_axes1_xx = -v->rrr_leg1_qd_1*v->rrr_leg1_qd_1;
+        v->axis_y_rrr_leg1_axes2_x*t_dot_x + v->rrr_leg1_qd_1_t*v->rrr_leg1_r_1_in_axes2_x);
     /* (rrr_leg1-omega_2) angular velocity of link 2 */
-    const real rrr_leg1_omega_2_in_axes2_z = v->rrr_leg1_qd_1 + v->rrr_leg1_qd_2;
+    const real rrr_leg1_omega_2_in_axes2_z = v->rrr_leg1_qd_2 - v->rrr_leg1_qd_1_t;
     /* (rrr_leg1-W_2) centripetal tensor of link 2 */
     const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
     /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrr_leg1_bias_t =
-        rrr_leg1_W_1_in_axes1_xx*m->rrr_leg1_joint2_offset_x[i]*v->rrr_leg1_s_2;
+    v->rrr_leg1_bias_t = rrr_leg1_S_dot_in_axes2_x*v->rrr_leg1_qd_1_t;
     v->rrr_leg1_bias_in_axes2_x =
-        rrr_leg1_W_1_in_axes1_xx*v->rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i] -
-        rrr_leg1_W_2_t*m->rrr_leg1_platform_joint_offset_x[i];
+        -v->rrr_leg1_d_2_in_axes2_x*v->rrr_leg1_qd_1_t*v->rrr_leg1_qd_1_t -
+        rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*m->rrr_leg1_platform_joint_offset_x[i];
     /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
        point */
     v->rrr_leg1_c_t = rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_x[i];
@@ -1926,7 +1933,7 @@ INLINE void stage_rrr_leg1_A_V_X(const prepared *m, size_t i, values_rrr_leg1 *v
         v->rrr_leg1_bias_in_axes2_x;
     const real rrr_leg1_rel_in_axes2_y = v->rrr_leg1_S_ddot_in_axes2_y + v->rrr_leg1_bias_t;
     /* (rrr_leg1-qdd_1) acceleration of joint 1 */
-    v->rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
+    v->rrr_leg1_qdd_1_t = v->inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_rel_in_axes2_x;
     /* (rrr_leg1-qdd_2) acceleration of joint 2 */
     v->rrr_leg1_qdd_2 = m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_in_axes2_y +
         v->rrr_leg1_qdd_1_t*v->rrr_leg1_r_1_in_axes2_x);
@@ -1937,24 +1944,26 @@ INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_le
     /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
        links' inertia and weight */
     const real rrr_leg1_d_Gamma_2_t_2 = m->rrr_leg1_d_Gamma_2_t[i]*v->rrr_leg1_r_1_in_axes2_x;
-    const real rrr_leg1_d_Gamma_2_in_axes2_x =
-        v->rrr_leg1_w_1_in_axes2_x*(m->rrr_leg1_J_2_in_spec2_zz[i] - rrr_leg1_d_Gamma_2_t_2) -
-        m->rrr_leg1_h_2_in_spec2_y[i];
+    const real rrr_leg1_d_Gamma_2_in_axes2_x = -m->rrr_leg1_h_2_in_spec2_y[i] -
+        v->inv_rrr_leg1_r_1_in_axes2_y*(m->rrr_leg1_J_2_in_spec2_zz[i] -
+        rrr_leg1_d_Gamma_2_t_2);
     /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
        links' inertia and weight */
-    const real rrr_leg1_d_Gamma_1_in_axes2_x =
-        v->rrr_leg1_w_1_in_axes2_x*(m->rrr_leg1_Jc_1_in_axes1_zz[i] - rrr_leg1_d_Gamma_2_t_2)
-        - m->rrr_leg1_h_2_in_spec2_y[i];
+    const real rrr_leg1_d_Gamma_1_in_axes2_x = -m->rrr_leg1_h_2_in_spec2_y[i] -
+        v->inv_rrr_leg1_r_1_in_axes2_y*(m->rrr_leg1_Jc_1_in_axes1_zz[i] -
+        rrr_leg1_d_Gamma_2_t_2);
     /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
        and without the mass at the connection point */
-    const real rrr_leg1_d_c_in_axes2_xy = m->rrr_leg1_d_phi_2_t[i] -
-        m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_1_in_axes2_x -
+    const real rrr_leg1_d_c_in_axes2_xy =
+        v->inv_rrr_leg1_r_1_in_axes2_y*m->rrr_leg1_d_Gamma_2_in_axes2_y[i] -
+        m->rrr_leg1_d_phi_2_in_axes2_xy[i] -
         m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_2_in_axes2_x;
     /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_leg1_Q_t = m->rrr_leg1_h_2_in_spec2_y[i]*(v->rrr_leg1_w_1_in_axes2_x +
-        v->rrr_leg1_w_2_in_axes2_x) - m->rrr_leg1_d_c_in_axes2_yy[i] -
-        rrr_leg1_d_Gamma_1_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x -
-        rrr_leg1_d_Gamma_2_in_axes2_x*v->rrr_leg1_w_2_in_axes2_x;
+    const real rrr_leg1_Q_t = v->inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_d_Gamma_1_in_axes2_x -
+        m->rrr_leg1_d_c_in_axes2_yy[i] -
+        rrr_leg1_d_Gamma_2_in_axes2_x*v->rrr_leg1_w_2_in_axes2_x +
+        m->rrr_leg1_h_2_in_spec2_y[i]*(v->rrr_leg1_w_2_in_axes2_x -
+        v->inv_rrr_leg1_r_1_in_axes2_y);
     const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
     const real rrr_leg1_Q_t_3 = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy +
         v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2;
@@ -1962,16 +1971,16 @@ INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_le
         v->axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
     v->rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
         2*v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
-    v->rrr_leg1_Q_xy = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
-        v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
     v->rrr_leg1_Q_yy = -m->rrr_leg1_d_c_in_axes2_yy[i] -
         2*v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
+    v->rrr_leg1_Q_xy = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
+        v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
 }
 
 INLINE void stage_rrr_leg1_Z_dynamics(const prepared *m, size_t i, values_rrr_leg1 *v)
 {
     /* (rrr_leg1-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rrr_leg1_qdd_1_o = -v->rrr_leg1_bias_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
+    const real rrr_leg1_qdd_1_o = v->inv_rrr_leg1_r_1_in_axes2_y*v->rrr_leg1_bias_in_axes2_x;
     /* (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real rrr_leg1_alpha_2_o_in_axes2_z = rrr_leg1_qdd_1_o +
         m->rrr_leg1_w_2_in_axes2_y[i]*(v->rrr_leg1_bias_t -
@@ -1997,8 +2006,8 @@ INLINE void stage_rrr_leg1_Z_dynamics(const prepared *m, size_t i, values_rrr_le
     /* (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass
        at the connection point */
     const real rrr_leg1_c_o_in_axes2_x = v->rrr_leg1_c_t +
-        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] +
-        v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] -
+        v->inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_G_o_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
         rrr_leg1_N_1_o_in_axes1_z);
     const real rrr_leg1_c_o_in_axes2_y = v->rrr_leg1_c_t_2 -
         rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_o_in_axes2_y;
@@ -2035,11 +2044,40 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t i, values_rrr
     /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
        point */
     v->rrr_leg1_c_in_axes2_x = v->rrr_leg1_c_t +
-        rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] +
-        v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] -
+        v->inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_G_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
         rrr_leg1_N_1_in_axes1_z);
     v->rrr_leg1_c_in_axes2_y = v->rrr_leg1_c_t_2 -
         rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_in_axes2_y;
+}
+
+INLINE void any_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *H, status_flags *t)
+{
+    H[0*w + k] = o[0*count + at];
+    H[NU*w + k] = o[1*count + at];
+    H[1*w + k] = o[2*count + at];
+    H[(NU + 1)*w + k] = o[3*count + at];
+    t->unreachable[k] += o[4*count + at];
+    t->singular[k] += o[5*count + at];
+    t->total[k] += o[6*count + at];
+}
+
+INLINE void any_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
+    status_flags *t)
+{
+    H[2*w + k] = o[0*count + at];
+    H[(NU + 2)*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+INLINE void any_place_rrr_leg1_2(size_t k, size_t at, size_t count, const real *o, status_flags
+    *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
@@ -2074,18 +2112,6 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
     o[4*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void dynamics_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
-    real *H, status_flags *t)
-{
-    H[0*w + k] = o[0*count + at];
-    H[NU*w + k] = o[1*count + at];
-    H[1*w + k] = o[2*count + at];
-    H[(NU + 1)*w + k] = o[3*count + at];
-    t->unreachable[k] += o[4*count + at];
-    t->singular[k] += o[5*count + at];
-    t->total[k] += o[6*count + at];
-}
-
 INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *X, const real *V, real *terms, real *o)
 {
@@ -2108,16 +2134,6 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void dynamics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[2*w + k] = o[0*count + at];
-    H[(NU + 2)*w + k] = o[1*count + at];
-    t->unreachable[k] += o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
@@ -2148,9 +2164,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real sums[5] = {0};
-    real terms_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[7*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real sums[5] CLEARED;
+    real terms_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[7*LEGS(LEGS_OF_rrr_leg1)]
+        CLEARED;
+    real terms_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         dynamics_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, V, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -2158,13 +2175,13 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
         dynamics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
-        dynamics_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
+        any_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
     }
     for (size_t n = 0; n < 5; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        dynamics_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t n = 0; n < 5; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2186,7 +2203,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rrr_leg1);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
+            any_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2194,7 +2211,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2219,12 +2236,6 @@ INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *X, real *terms, real *o)
 {
@@ -2238,12 +2249,6 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
@@ -2265,9 +2270,10 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real sums[3] = {0};
-    real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real sums[3] CLEARED;
+    real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)]
+        CLEARED;
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         M_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -2275,13 +2281,13 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
         M_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
-        M_place_rrr_leg1(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
+        any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        M_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2303,7 +2309,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, X, sums, o_rrr_leg1);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rrr_leg1(k, k, LANES, o_rrr_leg1, t);
+            any_place_rrr_leg1_2(k, k, LANES, o_rrr_leg1, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2311,7 +2317,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rrr(m, LANES, i, k, k, LANES, 1, X, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_leg1_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2336,12 +2342,6 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *X, const real *V, real *terms, real *o)
 {
@@ -2355,12 +2355,6 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
@@ -2379,9 +2373,10 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real sums[2] = {0};
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real sums[2] CLEARED;
+    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)]
+        CLEARED;
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         Z_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, V, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -2389,13 +2384,13 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
         Z_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
-        Z_place_rrr_leg1(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
+        any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        Z_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2417,7 +2412,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rrr_leg1);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rrr_leg1(k, k, LANES, o_rrr_leg1, t);
+            any_place_rrr_leg1_2(k, k, LANES, o_rrr_leg1, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2425,7 +2420,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rrr(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_leg1_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2453,18 +2448,6 @@ INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     o[4*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void H_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    status_flags *t)
-{
-    H[0*w + k] = o[0*count + at];
-    H[NU*w + k] = o[1*count + at];
-    H[1*w + k] = o[2*count + at];
-    H[(NU + 1)*w + k] = o[3*count + at];
-    t->unreachable[k] += o[4*count + at];
-    t->singular[k] += o[5*count + at];
-    t->total[k] += o[6*count + at];
-}
-
 INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *X, real *o)
 {
@@ -2479,20 +2462,10 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void H_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    status_flags *t)
-{
-    H[2*w + k] = o[0*count + at];
-    H[(NU + 2)*w + k] = o[1*count + at];
-    t->unreachable[k] += o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real o_rrr_leg1[7*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr_leg1[7*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         H_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), X, o_rrr_leg1);
     }
@@ -2500,10 +2473,10 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
         H_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), X, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
-        H_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
+        any_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        H_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
 }
 
@@ -2517,7 +2490,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
             H_legs_rrr_leg1(m, LANES, i, k, k, LANES, X, o_rrr_leg1);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
+            any_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2525,7 +2498,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
             H_legs_rrr(m, LANES, i, k, k, LANES, X, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
 }
@@ -2638,14 +2611,21 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[2] = {0}, sums[2] = {0};
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[6*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[4*LEGS(LEGS_OF_rrr)] = {0};
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
-        required_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, V, A, terms_rrr_leg1, o_rrr_leg1);
+    real s[2] CLEARED, sums[2] CLEARED;
+    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[6*LEGS(LEGS_OF_rrr_leg1)]
+        CLEARED;
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[4*LEGS(LEGS_OF_rrr)] CLEARED;
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
+            required_legs_rrr_leg1(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr_leg1), 0, X, V, A,
+                terms_rrr_leg1, o_rrr_leg1);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        required_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            required_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr,
+                o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         required_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
@@ -2674,7 +2654,7 @@ INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t
     /* (rrr_leg1-q_1) displacement of joint 1 */
     const real rrr_leg1_q_1 = angle(v.rrr_leg1_s_1, v.rrr_leg1_c_1);
     /* (rrr_leg1-q_2) displacement of joint 2 */
-    const real rrr_leg1_q_2 = angle(v.rrr_leg1_s_2, v.rrr_leg1_c_2);
+    const real rrr_leg1_q_2 = angle(-v.rrr_leg1_s_2_t, v.rrr_leg1_c_2);
     /* (rrr_leg1-q_1) */
     o[0*count + k] = rrr_leg1_q_1;
     /* (rrr_leg1-q_2) */
@@ -2703,7 +2683,7 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     /* (rrr-q_1) displacement of joint 1 */
     const real rrr_q_1 = angle(v.rrr_s_1, v.rrr_c_1);
     /* (rrr-q_2) displacement of joint 2 */
-    const real rrr_q_2 = angle(v.rrr_s_2, v.rrr_c_2);
+    const real rrr_q_2 = angle(-v.rrr_s_2_t, v.rrr_c_2);
     /* (rrr-q_1) */
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
@@ -2725,8 +2705,8 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t c
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         inverse_kinematics_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), X, o_rrr_leg1);
     }
@@ -2772,10 +2752,10 @@ INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t i, siz
     stage_rrr_leg1_X(m, w, i, j, X, &v);
     stage_rrr_leg1_V_X(m, w, i, j, V, &v);
     /* (rrr_leg1-qd_1) rate of joint 1 */
-    o[0*count + k] = v.rrr_leg1_qd_1;
+    o[0*count + k] = -v.rrr_leg1_qd_1_t;
     /* (rrr_leg1-qd_2) rate of joint 2 */
     o[1*count + k] = v.rrr_leg1_qd_2;
-    o[4*count + k] = v.rrr_leg1_qd_1 + v.rrr_leg1_qd_2;
+    o[4*count + k] = v.rrr_leg1_qd_1_t + v.rrr_leg1_qd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
@@ -2799,10 +2779,10 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
     stage_rrr_X(m, w, i, j, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     /* (rrr-qd_1) rate of joint 1 */
-    o[0*count + k] = v.rrr_qd_1;
+    o[0*count + k] = -v.rrr_qd_1_t;
     /* (rrr-qd_2) rate of joint 2 */
     o[1*count + k] = v.rrr_qd_2;
-    o[4*count + k] = v.rrr_qd_1 + v.rrr_qd_2;
+    o[4*count + k] = v.rrr_qd_1_t + v.rrr_qd_2;
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
@@ -2821,8 +2801,8 @@ INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, c
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         joint_rates_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), X, V, o_rrr_leg1);
     }
@@ -2921,8 +2901,8 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         joint_accelerations_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), X, V, A, o_rrr_leg1);
     }
@@ -3050,15 +3030,20 @@ INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const re
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real o_rrr_leg1[8*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr_leg1[8*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 9);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
-        legs_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), X, V, A, o_rrr_leg1);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
+            legs_legs_rrr_leg1(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr_leg1), X, V, A,
+                o_rrr_leg1);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        legs_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            legs_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         legs_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg_force, actuator, t);
@@ -3088,25 +3073,18 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
     const real rrr_leg1_potential_t_3 = v.rrr_leg1_g_in_axes1_x*(m->rrr_leg1_h_1_in_spec1_x[i]
         + v.rrr_leg1_c_2*m->rrr_leg1_h_2_in_spec2_x[i] +
         m->rrr_leg1_link1_mass[i]*(v.rrr_leg1_c_1*m->rrr_leg1_potential_t[i] +
-        m->rrr_leg1_potential_t_2[i]*v.rrr_leg1_s_1) -
-        m->rrr_leg1_h_2_in_spec2_y[i]*v.rrr_leg1_s_2) +
+        m->rrr_leg1_potential_t_2[i]*v.rrr_leg1_s_1) +
+        m->rrr_leg1_h_2_in_spec2_y[i]*v.rrr_leg1_s_2_t) +
         v.rrr_leg1_g_in_axes1_y*(m->rrr_leg1_h_1_in_spec1_y[i] +
         v.rrr_leg1_c_2*m->rrr_leg1_h_2_in_spec2_y[i] +
         m->rrr_leg1_link1_mass[i]*(v.rrr_leg1_c_1*m->rrr_leg1_potential_t_2[i] -
-        m->rrr_leg1_potential_t[i]*v.rrr_leg1_s_1) +
-        m->rrr_leg1_h_2_in_spec2_x[i]*v.rrr_leg1_s_2);
+        m->rrr_leg1_potential_t[i]*v.rrr_leg1_s_1) -
+        m->rrr_leg1_h_2_in_spec2_x[i]*v.rrr_leg1_s_2_t);
     /* (potential) */
     gather(&terms[0*count + k], add, -rrr_leg1_potential_t_3);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
-}
-
-INLINE void potential_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o,
-    status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3118,20 +3096,14 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrr_potential_t_3 = v.rrr_g_in_axes1_x*(m->rrr_h_1_in_spec1_x[i] +
         v.rrr_c_2*m->rrr_h_2_in_spec2_x[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
-        m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
+        m->rrr_potential_t_2[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2_t) +
         v.rrr_g_in_axes1_y*(m->rrr_h_1_in_spec1_y[i] + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
-        m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
+        m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3147,23 +3119,28 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[1] = {0}, sums[2] = {0};
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
-        potential_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, terms_rrr_leg1, o_rrr_leg1);
+    real s[1] CLEARED, sums[2] CLEARED;
+    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
+            potential_legs_rrr_leg1(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr_leg1), 0, X,
+                terms_rrr_leg1, o_rrr_leg1);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        potential_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            potential_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
-        potential_place_rrr_leg1(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
+        any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        potential_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -3288,9 +3265,9 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real sums[2] = {0};
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[7*LEGS(LEGS_OF_rrr)] = {0};
+    real sums[2] CLEARED;
+    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[7*LEGS(LEGS_OF_rrr)] CLEARED;
     condition_before(m, 1, 0, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         condition_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, terms_rrr_leg1, o_rrr_leg1);
@@ -3499,8 +3476,8 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
 {
     static const real no_wrench[NW] = {0};
     static const real no_weights[NU] = {1, 1, 1};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, inverse_root_1[NU] = {0},
-        scale_columns_1[NV*NU] = {0}, least_norm_1[NU] = {0}, tau[NU] = {0};
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, inverse_root_1[NU] CLEARED,
+        scale_columns_1[NV*NU] CLEARED, least_norm_1[NU] = {0}, tau[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3558,8 +3535,8 @@ int fivebar_redundant_forward_dynamics(const prepared *m, const real *X, const r
     *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -3628,8 +3605,8 @@ int fivebar_redundant_leg_reactions(const prepared *m, const real *X, const real
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] = {0},
-        leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NU] = {0};
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, least_norm_1[NU] = {0},
+        leg_force[3*NL] CLEARED, actuator[9] CLEARED, forces[NL*NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3650,7 +3627,7 @@ int fivebar_redundant_leg_reactions(const prepared *m, const real *X, const real
 int fivebar_redundant_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
     real *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3668,7 +3645,7 @@ int fivebar_redundant_energy(const prepared *m, const real *X, const real *V, re
 
 int fivebar_redundant_null_space(const prepared *m, const real *X, real *basis_out)
 {
-    real H[NV*NU] = {0}, basis[NU] = {0};
+    real H[NV*NU] CLEARED, basis[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3679,7 +3656,7 @@ int fivebar_redundant_null_space(const prepared *m, const real *X, real *basis_o
 
 int fivebar_redundant_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, reach[NL] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, reach[NL] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3699,8 +3676,8 @@ int fivebar_redundant_condition(const prepared *m, const real *X, real *sigma_ou
 int fivebar_redundant_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
-        {0}, measure[1] = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
+        singular_values_1[NV] = {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3721,8 +3698,8 @@ int fivebar_redundant_manipulability(const prepared *m, const real *X, real *mea
 int fivebar_redundant_singularity_distance(const prepared *m, const real *X, real *actuators_out,
     real *legs_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
-        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
+        singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3746,9 +3723,9 @@ int fivebar_redundant_force_distribution(const prepared *m, const real *X, const
 {
     static const real no_wrench[NW] = {0};
     static const real no_reference[NU] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, least_norm_1[NU] = {0},
         null_basis_1[NU] = {0}, transposed_1[NU] = {0}, product_1[NU*NU] = {0}, times_1[NU] = {0},
-        add_1[NU] = {0}, tau[NU] = {0};
+        add_1[NU] CLEARED, tau[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3774,7 +3751,7 @@ int fivebar_redundant_force_distribution(const prepared *m, const real *X, const
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, subtract_1[NU] = {0}, residual[NU] = {0};
+    real q[NJ] CLEARED, subtract_1[NU] CLEARED, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -3862,7 +3839,7 @@ int fivebar_redundant_dissipation(const prepared *m, const real *X, const real *
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -3876,7 +3853,7 @@ int fivebar_redundant_dissipation(const prepared *m, const real *X, const real *
 int fivebar_redundant_momentum(const prepared *m, const real *X, const real *V, real
     *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3888,7 +3865,7 @@ int fivebar_redundant_momentum(const prepared *m, const real *X, const real *V, 
 int fivebar_redundant_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3903,7 +3880,7 @@ int fivebar_redundant_joint_margins(const prepared *m, const real *X, real *marg
 
 int fivebar_redundant_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3917,7 +3894,7 @@ int fivebar_redundant_within_limits(const prepared *m, const real *X, real *with
 
 int fivebar_redundant_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3929,7 +3906,7 @@ int fivebar_redundant_actuator_positions(const prepared *m, const real *X, real 
 int fivebar_redundant_actuator_rates(const prepared *m, const real *X, const real *V, real
     *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0};
+    real qd_of_joint_rates[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3941,7 +3918,7 @@ int fivebar_redundant_actuator_rates(const prepared *m, const real *X, const rea
 int fivebar_redundant_actuator_accelerations(const prepared *m, const real *X, const real *V,
     const real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3953,7 +3930,7 @@ int fivebar_redundant_actuator_accelerations(const prepared *m, const real *X, c
 int fivebar_redundant_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -3965,7 +3942,7 @@ int fivebar_redundant_power(const prepared *m, const real *X, const real *V, con
 
 int fivebar_redundant_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real X_moved[NQ] = {0};
+    real X_moved[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -3977,7 +3954,7 @@ int fivebar_redundant_retract(const real *X, const real *step, real *X_moved_out
 
 int fivebar_redundant_difference(const real *X0, const real *X1, real *step_out)
 {
-    real step[NV] = {0};
+    real step[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -3989,7 +3966,7 @@ int fivebar_redundant_difference(const real *X0, const real *X1, real *step_out)
 
 int fivebar_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real subtract_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    real subtract_1[NQ] CLEARED, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

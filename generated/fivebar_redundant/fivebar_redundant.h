@@ -128,7 +128,7 @@ typedef struct {
             rrr_leg1_base_frame_xx[1], rrr_leg1_base_frame_xy[1], rrr_leg1_base_frame_yx[1],
             rrr_leg1_base_frame_yy[1], rrr_leg1_base_point_x[1], rrr_leg1_base_point_y[1],
             rrr_leg1_branch_1[1], rrr_leg1_d_Gamma_2_in_axes2_y[1], rrr_leg1_d_Gamma_2_t[1],
-            rrr_leg1_d_c_in_axes2_yy[1], rrr_leg1_d_phi_2_t[1], rrr_leg1_h_1_in_spec1_x[1],
+            rrr_leg1_d_c_in_axes2_yy[1], rrr_leg1_d_phi_2_in_axes2_xy[1], rrr_leg1_h_1_in_spec1_x[1],
             rrr_leg1_h_1_in_spec1_y[1], rrr_leg1_h_2_in_spec2_x[1], rrr_leg1_h_2_in_spec2_y[1],
             rrr_leg1_joint2_offset_x[1], rrr_leg1_link1_mass[1], rrr_leg1_link2_mass[1],
             rrr_leg1_mu_1_t[1], rrr_leg1_mu_1_t_2[1], rrr_leg1_platform_joint_offset_x[1],
@@ -141,11 +141,12 @@ typedef struct {
             rrr_Jc_1_in_axes1_zz[1], rrr_Kd_1_t[1], rrr_Kd_1_t_2[1], rrr_base_frame_xx[1],
             rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1], rrr_base_point_x[1],
             rrr_base_point_y[1], rrr_branch_1[1], rrr_d_Gamma_2_in_axes2_y[1], rrr_d_Gamma_2_t[1],
-            rrr_d_c_in_axes2_yy[1], rrr_d_phi_2_t[1], rrr_h_1_in_spec1_x[1], rrr_h_1_in_spec1_y[1],
-            rrr_h_2_in_spec2_x[1], rrr_h_2_in_spec2_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1],
-            rrr_link2_mass[1], rrr_mu_1_t[1], rrr_mu_1_t_2[1], rrr_platform_joint_offset_x[1],
-            rrr_platform_point_x[1], rrr_platform_point_y[1], rrr_potential_t[1],
-            rrr_potential_t_2[1], rrr_rho2_1_t[1], rrr_size[1], rrr_w_2_in_axes2_y[1];
+            rrr_d_c_in_axes2_yy[1], rrr_d_phi_2_in_axes2_xy[1], rrr_h_1_in_spec1_x[1],
+            rrr_h_1_in_spec1_y[1], rrr_h_2_in_spec2_x[1], rrr_h_2_in_spec2_y[1],
+            rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1], rrr_mu_1_t[1],
+            rrr_mu_1_t_2[1], rrr_platform_joint_offset_x[1], rrr_platform_point_x[1],
+            rrr_platform_point_y[1], rrr_potential_t[1], rrr_potential_t_2[1], rrr_rho2_1_t[1],
+            rrr_size[1], rrr_w_2_in_axes2_y[1];
     fivebar_redundant_real Z_p_x, Z_p_y, b_c_in_platform_x, b_c_in_platform_y, gravity_x, gravity_y,
             h_star_x, h_star_y, legs_size, m_star;
 } fivebar_redundant_model;
@@ -164,13 +165,13 @@ extern const char *const fivebar_redundant_ACTUATOR_NAMES[FIVEBAR_REDUNDANT_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_redundant_model *model);
 
-/* Inertia matrix M. 124 mul, 83 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 116 mul, 79 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int fivebar_redundant_M(const fivebar_redundant_model *model, const fivebar_redundant_real *X,
     fivebar_redundant_real *M);
 size_t fivebar_redundant_M_batch(const fivebar_redundant_model *model, size_t n, const
     fivebar_redundant_real *X, fivebar_redundant_real *M, int *status);
 
-/* Velocity and gravity terms Z. 166 mul, 96 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 156 mul, 92 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int fivebar_redundant_Z(const fivebar_redundant_model *model, const fivebar_redundant_real *X,
     const fivebar_redundant_real *V, fivebar_redundant_real *Z);
@@ -178,7 +179,7 @@ size_t fivebar_redundant_Z_batch(const fivebar_redundant_model *model, size_t n,
     fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *Z, int
     *status);
 
-/* Force transformation H: actuators to task space. 90 mul, 43 add, 4 div, 2 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 83 mul, 39 add, 4 div, 2 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int fivebar_redundant_H(const fivebar_redundant_model *model, const fivebar_redundant_real *X,
     fivebar_redundant_real *H);
@@ -192,7 +193,7 @@ int fivebar_redundant_inverse_kinematics(const fivebar_redundant_model *model, c
 size_t fivebar_redundant_inverse_kinematics_batch(const fivebar_redundant_model *model, size_t n,
     const fivebar_redundant_real *X, fivebar_redundant_real *q, int *status);
 
-/* Rates of all joints. 96 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 88 mul, 44 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int fivebar_redundant_joint_rates(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *rates);
@@ -200,7 +201,7 @@ size_t fivebar_redundant_joint_rates_batch(const fivebar_redundant_model *model,
     fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *rates, int
     *status);
 
-/* Accelerations of all joints. 124 mul, 62 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 112 mul, 58 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int fivebar_redundant_joint_accelerations(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
@@ -209,7 +210,7 @@ size_t fivebar_redundant_joint_accelerations_batch(const fivebar_redundant_model
     const fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real
     *A, fivebar_redundant_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 216 mul, 139 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 206 mul, 135 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int fivebar_redundant_dynamics(const fivebar_redundant_model *model, const fivebar_redundant_real
     *X, const fivebar_redundant_real *V, fivebar_redundant_real *M, fivebar_redundant_real *Z,
@@ -218,7 +219,7 @@ size_t fivebar_redundant_dynamics_batch(const fivebar_redundant_model *model, si
     fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *M,
     fivebar_redundant_real *Z, fivebar_redundant_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 186 mul, 112 add,
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 176 mul, 108 add,
    4 div, 2 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV),
    wrench (NW, or NULL). Out: tau (NU). */
 int fivebar_redundant_inverse_dynamics(const fivebar_redundant_model *model, const
@@ -229,7 +230,7 @@ size_t fivebar_redundant_inverse_dynamics_batch(const fivebar_redundant_model *m
     *A, const fivebar_redundant_real *wrench, fivebar_redundant_real *tau, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least sum of weights tau^2.
-   186 mul, 112 add, 4 div, 2 sqrt, 0 trig; the solution of the linear equations apart. In: X
+   176 mul, 108 add, 4 div, 2 sqrt, 0 trig; the solution of the linear equations apart. In: X
    (NQ), V (NV), A (NV), wrench (NW, or NULL), weights (NU, positive). Out: tau (NU). */
 int fivebar_redundant_inverse_dynamics_weighted(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
@@ -240,7 +241,7 @@ size_t fivebar_redundant_inverse_dynamics_weighted_batch(const fivebar_redundant
     fivebar_redundant_real *A, const fivebar_redundant_real *wrench, const fivebar_redundant_real
     *weights, fivebar_redundant_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 216 mul, 139 add, 4 div, 2 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 206 mul, 135 add, 4 div, 2 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int fivebar_redundant_forward_dynamics(const fivebar_redundant_model *model, const
@@ -262,7 +263,7 @@ size_t fivebar_redundant_complete_acceleration_batch(const fivebar_redundant_mod
     *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 188 mul, 106 add, 4 div, 2 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 178 mul, 102 add, 4 div, 2 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (2 x 3). */
 int fivebar_redundant_leg_reactions(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
@@ -289,7 +290,7 @@ size_t fivebar_redundant_null_space_batch(const fivebar_redundant_model *model, 
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 100 mul, 54 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   legs. 93 mul, 50 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
    (2), legs (2). */
 int fivebar_redundant_condition(const fivebar_redundant_model *model, const fivebar_redundant_real
     *X, fivebar_redundant_real *sigma, fivebar_redundant_real *legs);
@@ -298,7 +299,7 @@ size_t fivebar_redundant_condition_batch(const fivebar_redundant_model *model, s
     *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 100 mul, 54 add, 4 div, 5 sqrt, 0 trig; the singular values
+   the least over the largest of them. 93 mul, 50 add, 4 div, 5 sqrt, 0 trig; the singular values
    apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int fivebar_redundant_manipulability(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, fivebar_redundant_real *measure, fivebar_redundant_real *isotropy);
@@ -306,8 +307,8 @@ size_t fivebar_redundant_manipulability_batch(const fivebar_redundant_model *mod
     const fivebar_redundant_real *X, fivebar_redundant_real *measure, fivebar_redundant_real
     *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 100
-   mul, 54 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 93
+   mul, 50 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
    legs (1). */
 int fivebar_redundant_singularity_distance(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, fivebar_redundant_real *actuators, fivebar_redundant_real *legs);
@@ -318,7 +319,7 @@ size_t fivebar_redundant_singularity_distance_batch(const fivebar_redundant_mode
 /* Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference. By
    the dual active-set method of Goldfarb and Idnani; continuous along a motion. Impossible
    (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull with
-   negative forces: tau_max = -t keeps tensions of t at least. 186 mul, 112 add, 4 div, 2 sqrt, 0
+   negative forces: tau_max = -t keeps tensions of t at least. 176 mul, 108 add, 4 div, 2 sqrt, 0
    trig; the search apart. In: X (NQ), V (NV), A (NV), tau_min (NU), tau_max (NU), wrench (NW, or
    NULL), reference (NU, or NULL). Out: tau (NU). */
 int fivebar_redundant_force_distribution(const fivebar_redundant_model *model, const
@@ -351,7 +352,7 @@ size_t fivebar_redundant_dissipation_batch(const fivebar_redundant_model *model,
     fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real
     *dissipation, int *status);
 
-/* Generalised momentum M V. 124 mul, 83 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 116 mul, 79 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int fivebar_redundant_momentum(const fivebar_redundant_model *model, const fivebar_redundant_real
     *X, const fivebar_redundant_real *V, fivebar_redundant_real *momentum);
@@ -380,7 +381,7 @@ int fivebar_redundant_actuator_positions(const fivebar_redundant_model *model, c
 size_t fivebar_redundant_actuator_positions_batch(const fivebar_redundant_model *model, size_t n,
     const fivebar_redundant_real *X, fivebar_redundant_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 96 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X
+/* Rates of the actuated joints, in the order of tau. 88 mul, 44 add, 4 div, 2 sqrt, 0 trig. In: X
    (NQ), V (NV). Out: rates (NU). */
 int fivebar_redundant_actuator_rates(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *rates);
@@ -388,7 +389,7 @@ size_t fivebar_redundant_actuator_rates_batch(const fivebar_redundant_model *mod
     const fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real
     *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 124 mul, 62 add, 4 div, 2 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 112 mul, 58 add, 4 div, 2 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int fivebar_redundant_actuator_accelerations(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,

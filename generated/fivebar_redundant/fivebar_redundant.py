@@ -610,7 +610,7 @@ def _prepare(p):
     # (rrr_leg1-w_2) reciprocal vector 2
     rrr_leg1_w_2_in_axes2_y = 1.0/rrr_leg1_platform_joint_offset_x
     # (rrr_leg1-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    rrr_leg1_d_phi_2_t = rrr_leg1_h_2_in_spec2_y*rrr_leg1_w_2_in_axes2_y
+    rrr_leg1_d_phi_2_in_axes2_xy = -rrr_leg1_h_2_in_spec2_y*rrr_leg1_w_2_in_axes2_y
     # (rrr_leg1-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
     rrr_leg1_Jc_1_in_axes1_zz = rrr_leg1_J_1_in_spec1_zz + rrr_leg1_J_2_in_spec2_zz
     # (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
@@ -680,7 +680,7 @@ def _prepare(p):
     # (rrr-w_2) reciprocal vector 2
     rrr_w_2_in_axes2_y = 1.0/rrr_platform_joint_offset_x
     # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    rrr_d_phi_2_t = rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y
+    rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y
     # (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
     rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz
     # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
@@ -731,7 +731,7 @@ def _prepare(p):
                     rrr_leg1_Kd_1_t_2, rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy,
                     rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy, rrr_leg1_base_point_x,
                     rrr_leg1_base_point_y, rrr_leg1_branch_1, rrr_leg1_d_Gamma_2_in_axes2_y,
-                    rrr_leg1_d_Gamma_2_t, rrr_leg1_d_c_in_axes2_yy, rrr_leg1_d_phi_2_t,
+                    rrr_leg1_d_Gamma_2_t, rrr_leg1_d_c_in_axes2_yy, rrr_leg1_d_phi_2_in_axes2_xy,
                     rrr_leg1_h_1_in_spec1_x, rrr_leg1_h_1_in_spec1_y, rrr_leg1_h_2_in_spec2_x,
                     rrr_leg1_h_2_in_spec2_y, rrr_leg1_joint2_offset_x, rrr_leg1_mu_1_t,
                     rrr_leg1_mu_1_t_2, rrr_leg1_platform_joint_offset_x,
@@ -743,10 +743,11 @@ def _prepare(p):
                     rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
                     rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t,
-                    rrr_d_c_in_axes2_yy, rrr_d_phi_2_t, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y,
-                    rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t,
-                    rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
+                    rrr_d_c_in_axes2_yy, rrr_d_phi_2_in_axes2_xy, rrr_h_1_in_spec1_x,
+                    rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+                    rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+                    rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -759,19 +760,20 @@ def _prepare(p):
                     rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx,
                     rrr_leg1_base_frame_yy, rrr_leg1_base_point_x, rrr_leg1_base_point_y,
                     rrr_leg1_branch_1, rrr_leg1_d_Gamma_2_in_axes2_y, rrr_leg1_d_Gamma_2_t,
-                    rrr_leg1_d_c_in_axes2_yy, rrr_leg1_d_phi_2_t, rrr_leg1_h_2_in_spec2_y,
-                    rrr_leg1_joint2_offset_x, rrr_leg1_platform_joint_offset_x,
-                    rrr_leg1_platform_point_x, rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t,
-                    rrr_leg1_size, rrr_leg1_w_2_in_axes2_y,),
+                    rrr_leg1_d_c_in_axes2_yy, rrr_leg1_d_phi_2_in_axes2_xy,
+                    rrr_leg1_h_2_in_spec2_y, rrr_leg1_joint2_offset_x,
+                    rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+                    rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,
+                    rrr_leg1_w_2_in_axes2_y,),
                 ),
                 (_rrr,
         (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
                     rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
                     rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-                    rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy, rrr_d_phi_2_t,
-                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
-                    rrr_w_2_in_axes2_y,),
+                    rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
+                    rrr_d_phi_2_in_axes2_xy, rrr_h_2_in_spec2_y, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -1970,7 +1972,7 @@ def _at(m, function, X, given, at):
     return found
 
 
-# dynamics: 216 mul, 139 add, 4 div, 2 sqrt, 0 trig
+# dynamics: 206 mul, 135 add, 4 div, 2 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
@@ -1999,7 +2001,7 @@ def _run_dynamics(m, X, V):
             rrr_leg1_Kd_1_t_2, rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy,
             rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy, rrr_leg1_base_point_x,
             rrr_leg1_base_point_y, rrr_leg1_branch_1, rrr_leg1_d_Gamma_2_in_axes2_y,
-            rrr_leg1_d_Gamma_2_t, rrr_leg1_d_c_in_axes2_yy, rrr_leg1_d_phi_2_t,
+            rrr_leg1_d_Gamma_2_t, rrr_leg1_d_c_in_axes2_yy, rrr_leg1_d_phi_2_in_axes2_xy,
             rrr_leg1_h_1_in_spec1_x, rrr_leg1_h_1_in_spec1_y, rrr_leg1_h_2_in_spec2_x,
             rrr_leg1_h_2_in_spec2_y, rrr_leg1_joint2_offset_x, rrr_leg1_mu_1_t, rrr_leg1_mu_1_t_2,
             rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
@@ -2045,35 +2047,32 @@ def _run_dynamics(m, X, V):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-S_dot) velocity of the connection point
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
-        rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_S_dot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*t_dot_x - axis_y_rrr_leg1_axes2_x*t_dot_y
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_x = -axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -2084,29 +2083,24 @@ def _run_dynamics(m, X, V):
             axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = (
-        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
-            axis_y_rrr_leg1_axes2_x*t_dot_y)
-        )
+        rrr_leg1_qd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y + axis_y_rrr_leg1_axes2_x*t_dot_x
-            - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+            + rrr_leg1_qd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
-        # (rrr_leg1-W_1) centripetal tensor of link 1
-        rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_2 - rrr_leg1_qd_1_t
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_t = rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+        rrr_leg1_bias_t = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1_t
         rrr_leg1_bias_in_axes2_x = (
-        rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
-            rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1_t*rrr_leg1_qd_1_t -
+            rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-qdd_1_o) remainder of: acceleration of joint 1
-        rrr_leg1_qdd_1_o = -rrr_leg1_bias_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qdd_1_o = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_bias_in_axes2_x
         # (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_leg1_alpha_2_o_in_axes2_z = (
         rrr_leg1_qdd_1_o + rrr_leg1_w_2_in_axes2_y*(rrr_leg1_bias_t -
@@ -2128,8 +2122,8 @@ def _run_dynamics(m, X, V):
         # (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_in_axes2_x
         rrr_leg1_d_Gamma_2_in_axes2_x = (
-        rrr_leg1_w_1_in_axes2_x*(rrr_leg1_J_2_in_spec2_zz - rrr_leg1_d_Gamma_2_t_2) -
-            rrr_leg1_h_2_in_spec2_y
+        -rrr_leg1_h_2_in_spec2_y - inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_J_2_in_spec2_zz -
+            rrr_leg1_d_Gamma_2_t_2)
         )
         # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
@@ -2144,8 +2138,8 @@ def _run_dynamics(m, X, V):
         rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z + rrr_leg1_mu_2_o_in_axes2_z
         # (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrr_leg1_d_Gamma_1_in_axes2_x = (
-        rrr_leg1_w_1_in_axes2_x*(rrr_leg1_Jc_1_in_axes1_zz - rrr_leg1_d_Gamma_2_t_2) -
-            rrr_leg1_h_2_in_spec2_y
+        -rrr_leg1_h_2_in_spec2_y - inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_Jc_1_in_axes1_zz -
+            rrr_leg1_d_Gamma_2_t_2)
         )
         # (rrr_leg1-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_leg1_G_o_in_axes2_y = rrr_leg1_mu_2_o_in_axes2_z*rrr_leg1_w_2_in_axes2_y
@@ -2154,13 +2148,13 @@ def _run_dynamics(m, X, V):
         rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         # (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_d_c_in_axes2_xy = (
-        rrr_leg1_d_phi_2_t - rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_1_in_axes2_x -
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_d_Gamma_2_in_axes2_y - rrr_leg1_d_phi_2_in_axes2_xy -
             rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_c_o_in_axes2_x = (
-        rrr_leg1_c_t + rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_c_t + rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y -
+            inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_o_in_axes1_z)
         )
         rrr_leg1_c_o_in_axes2_y = (
@@ -2169,9 +2163,9 @@ def _run_dynamics(m, X, V):
         )
         # (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_leg1_Q_t = (
-        rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_1_in_axes2_x + rrr_leg1_w_2_in_axes2_x) -
-            rrr_leg1_d_c_in_axes2_yy - rrr_leg1_d_Gamma_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x -
-            rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_d_Gamma_1_in_axes2_x +
+            rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_2_in_axes2_x - inv_rrr_leg1_r_1_in_axes2_y) -
+            rrr_leg1_d_c_in_axes2_yy - rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         rrr_leg1_Q_t_2 = 0.5*rrr_leg1_Q_t
         rrr_leg1_Q_t_3 = (
@@ -2181,10 +2175,10 @@ def _run_dynamics(m, X, V):
         axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 - axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy
         )
         rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3
+        rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4
         rrr_leg1_Q_xy = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 + axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3
         )
-        rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4
         # (rrr_leg1-U) velocity and gravity terms of the leg force
         rrr_leg1_U_x = (
         -axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
@@ -2218,7 +2212,7 @@ def _run_dynamics(m, X, V):
             rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy,
             rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
             rrr_branch_1, rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
-            rrr_d_phi_2_t, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+            rrr_d_phi_2_in_axes2_xy, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
             rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
             rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
             rrr_size, rrr_w_2_in_axes2_y,
@@ -2249,44 +2243,44 @@ def _run_dynamics(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
-        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
-        rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
+        rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-qdd_1_o) remainder of: acceleration of joint 1
-        rrr_qdd_1_o = -rrr_bias_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
         rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_bias_t - rrr_qdd_1_o*rrr_r_1_in_axes2_x)
@@ -2302,7 +2296,7 @@ def _run_dynamics(m, X, V):
         # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
         rrr_d_Gamma_2_in_axes2_x = (
-        rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2)
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
@@ -2314,7 +2308,7 @@ def _run_dynamics(m, X, V):
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrr_d_Gamma_1_in_axes2_x = (
-        rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2)
         )
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
@@ -2323,29 +2317,29 @@ def _run_dynamics(m, X, V):
         rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
-        rrr_d_phi_2_t - rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y - rrr_d_phi_2_in_axes2_xy -
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
         rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_Q_t = (
-        rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) - rrr_d_c_in_axes2_yy -
-            rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x + rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x -
+            inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy -
             rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
         )
         rrr_Q_t_2 = 0.5*rrr_Q_t
         rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         # (rrr-U) velocity and gravity terms of the leg force
         rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
         rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y
@@ -2381,7 +2375,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 124 mul, 83 add, 4 div, 2 sqrt, 0 trig
+# M: 116 mul, 79 add, 4 div, 2 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2401,7 +2395,7 @@ def _run_M(m, X):
             rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy,
             rrr_leg1_base_point_x, rrr_leg1_base_point_y, rrr_leg1_branch_1,
             rrr_leg1_d_Gamma_2_in_axes2_y, rrr_leg1_d_Gamma_2_t, rrr_leg1_d_c_in_axes2_yy,
-            rrr_leg1_d_phi_2_t, rrr_leg1_h_2_in_spec2_y, rrr_leg1_joint2_offset_x,
+            rrr_leg1_d_phi_2_in_axes2_xy, rrr_leg1_h_2_in_spec2_y, rrr_leg1_joint2_offset_x,
             rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
             rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size, rrr_leg1_w_2_in_axes2_y,
         ) = k
@@ -2445,55 +2439,49 @@ def _run_M(m, X):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-S_dot) velocity of the connection point
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         # (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_in_axes2_x
         rrr_leg1_d_Gamma_2_in_axes2_x = (
-        rrr_leg1_w_1_in_axes2_x*(rrr_leg1_J_2_in_spec2_zz - rrr_leg1_d_Gamma_2_t_2) -
-            rrr_leg1_h_2_in_spec2_y
+        -rrr_leg1_h_2_in_spec2_y - inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_J_2_in_spec2_zz -
+            rrr_leg1_d_Gamma_2_t_2)
         )
         # (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrr_leg1_d_Gamma_1_in_axes2_x = (
-        rrr_leg1_w_1_in_axes2_x*(rrr_leg1_Jc_1_in_axes1_zz - rrr_leg1_d_Gamma_2_t_2) -
-            rrr_leg1_h_2_in_spec2_y
+        -rrr_leg1_h_2_in_spec2_y - inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_Jc_1_in_axes1_zz -
+            rrr_leg1_d_Gamma_2_t_2)
         )
         # (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_d_c_in_axes2_xy = (
-        rrr_leg1_d_phi_2_t - rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_1_in_axes2_x -
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_d_Gamma_2_in_axes2_y - rrr_leg1_d_phi_2_in_axes2_xy -
             rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_leg1_Q_t = (
-        rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_1_in_axes2_x + rrr_leg1_w_2_in_axes2_x) -
-            rrr_leg1_d_c_in_axes2_yy - rrr_leg1_d_Gamma_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x -
-            rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_d_Gamma_1_in_axes2_x +
+            rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_2_in_axes2_x - inv_rrr_leg1_r_1_in_axes2_y) -
+            rrr_leg1_d_c_in_axes2_yy - rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         rrr_leg1_Q_t_2 = 0.5*rrr_leg1_Q_t
         rrr_leg1_Q_t_3 = (
@@ -2503,10 +2491,10 @@ def _run_M(m, X):
         axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 - axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy
         )
         rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3
+        rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4
         rrr_leg1_Q_xy = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 + axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3
         )
-        rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4
         ok = (
         ok & (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
             (rrr_leg1_disc_1 >= 0.0) & (abs(rrr_leg1_r_1_in_axes2_y) > _TOLERANCE * rrr_leg1_size)
@@ -2521,10 +2509,10 @@ def _run_M(m, X):
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
             rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
             rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-            rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy, rrr_d_phi_2_t,
-            rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
-            rrr_w_2_in_axes2_y,
+            rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
+            rrr_d_phi_2_in_axes2_xy, rrr_h_2_in_spec2_y, rrr_joint2_offset_x,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+            rrr_size, rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
         rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
@@ -2552,48 +2540,48 @@ def _run_M(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
-        rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
+        rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
         # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
         rrr_d_Gamma_2_in_axes2_x = (
-        rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2)
         )
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrr_d_Gamma_1_in_axes2_x = (
-        rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2)
         )
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
-        rrr_d_phi_2_t - rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y - rrr_d_phi_2_in_axes2_xy -
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_Q_t = (
-        rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) - rrr_d_c_in_axes2_yy -
-            rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x + rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x -
+            inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy -
             rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
         )
         rrr_Q_t_2 = 0.5*rrr_Q_t
         rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
@@ -2614,7 +2602,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 166 mul, 96 add, 4 div, 2 sqrt, 0 trig
+# Z: 156 mul, 92 add, 4 div, 2 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -2683,54 +2671,46 @@ def _run_Z(m, X, V):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-S_dot) velocity of the connection point
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_S_dot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*t_dot_x - axis_y_rrr_leg1_axes2_x*t_dot_y
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = (
-        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
-            axis_y_rrr_leg1_axes2_x*t_dot_y)
-        )
+        rrr_leg1_qd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y + axis_y_rrr_leg1_axes2_x*t_dot_x
-            - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+            + rrr_leg1_qd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
-        # (rrr_leg1-W_1) centripetal tensor of link 1
-        rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_2 - rrr_leg1_qd_1_t
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_t = rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+        rrr_leg1_bias_t = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1_t
         rrr_leg1_bias_in_axes2_x = (
-        rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
-            rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1_t*rrr_leg1_qd_1_t -
+            rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-qdd_1_o) remainder of: acceleration of joint 1
-        rrr_leg1_qdd_1_o = -rrr_leg1_bias_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qdd_1_o = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_bias_in_axes2_x
         # (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_leg1_alpha_2_o_in_axes2_z = (
         rrr_leg1_qdd_1_o + rrr_leg1_w_2_in_axes2_y*(rrr_leg1_bias_t -
@@ -2767,8 +2747,8 @@ def _run_Z(m, X, V):
         rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         # (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_c_o_in_axes2_x = (
-        rrr_leg1_c_t + rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_c_t + rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y -
+            inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_o_in_axes1_z)
         )
         rrr_leg1_c_o_in_axes2_y = (
@@ -2828,40 +2808,40 @@ def _run_Z(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-qdd_1_o) remainder of: acceleration of joint 1
-        rrr_qdd_1_o = -rrr_bias_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
         rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_bias_t - rrr_qdd_1_o*rrr_r_1_in_axes2_x)
@@ -2889,8 +2869,8 @@ def _run_Z(m, X, V):
         rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
         rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
@@ -2914,7 +2894,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 90 mul, 43 add, 4 div, 2 sqrt, 0 trig
+# H: 83 mul, 39 add, 4 div, 2 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -2974,35 +2954,29 @@ def _run_H(m, X):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-S_dot) velocity of the connection point
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
-        rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_x = -axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -3055,21 +3029,20 @@ def _run_H(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
-        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
@@ -3080,7 +3053,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 186 mul, 112 add, 4 div, 2 sqrt, 0 trig
+# required: 176 mul, 108 add, 4 div, 2 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3161,35 +3134,32 @@ def _run_required(m, X, V, A):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-S_dot) velocity of the connection point
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
-        rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_S_dot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*t_dot_x - axis_y_rrr_leg1_axes2_x*t_dot_y
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_x = -axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -3200,19 +3170,14 @@ def _run_required(m, X, V, A):
             axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = (
-        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
-            axis_y_rrr_leg1_axes2_x*t_dot_y)
-        )
+        rrr_leg1_qd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y + axis_y_rrr_leg1_axes2_x*t_dot_x
-            - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+            + rrr_leg1_qd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
-        # (rrr_leg1-W_1) centripetal tensor of link 1
-        rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_2 - rrr_leg1_qd_1_t
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-S_ddot) acceleration of the connection point
@@ -3223,16 +3188,16 @@ def _run_required(m, X, V, A):
         axis_x_rrr_leg1_axes2_x*t_ddot_y + axis_y_rrr_leg1_axes2_x*t_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_t = rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+        rrr_leg1_bias_t = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1_t
         rrr_leg1_bias_in_axes2_x = (
-        rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
-            rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1_t*rrr_leg1_qd_1_t -
+            rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
         rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y + rrr_leg1_bias_t
         # (rrr_leg1-qdd_1) acceleration of joint 1
-        rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qdd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_rel_in_axes2_x
         # (rrr_leg1-qdd_2) acceleration of joint 2
         rrr_leg1_qdd_2 = (
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y +
@@ -3271,8 +3236,8 @@ def _run_required(m, X, V, A):
         rrr_leg1_c_t = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x
         rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         rrr_leg1_c_in_axes2_x = (
-        rrr_leg1_c_t + rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_c_t + rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y -
+            inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_in_axes1_z)
         )
         rrr_leg1_c_in_axes2_y = (
@@ -3337,48 +3302,48 @@ def _run_required(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
-        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
         rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
         # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
         rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
@@ -3406,8 +3371,8 @@ def _run_required(m, X, V, A):
         rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
         rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
         rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
@@ -3495,11 +3460,11 @@ def _run_inverse_kinematics(m, X):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
         # (rrr_leg1-q_2) displacement of joint 2
-        rrr_leg1_q_2 = atan2(rrr_leg1_s_2, rrr_leg1_c_2)
+        rrr_leg1_q_2 = atan2(-rrr_leg1_s_2_t, rrr_leg1_c_2)
         ok = (
         ok & (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
             (rrr_leg1_disc_1 >= 0.0)
@@ -3543,11 +3508,11 @@ def _run_inverse_kinematics(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-q_2) displacement of joint 2
-        rrr_q_2 = atan2(rrr_s_2, rrr_c_2)
+        rrr_q_2 = atan2(-rrr_s_2_t, rrr_c_2)
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
@@ -3556,7 +3521,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 96 mul, 48 add, 4 div, 2 sqrt, 0 trig
+# joint_rates: 88 mul, 44 add, 4 div, 2 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -3621,46 +3586,40 @@ def _run_joint_rates(m, X, V):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-S_dot) velocity of the connection point
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_S_dot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*t_dot_x - axis_y_rrr_leg1_axes2_x*t_dot_y
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = (
-        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
-            axis_y_rrr_leg1_axes2_x*t_dot_y)
-        )
+        rrr_leg1_qd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y + axis_y_rrr_leg1_axes2_x*t_dot_x
-            - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+            + rrr_leg1_qd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
         ok = (
         ok & (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
             (rrr_leg1_disc_1 >= 0.0) & (abs(rrr_leg1_r_1_in_axes2_y) > _TOLERANCE * rrr_leg1_size)
         )
         # (rrr_leg1-qd_1) rate of joint 1
-        out_qd[_qd_rrr_leg1[0][leg]] = rrr_leg1_qd_1
+        out_qd[_qd_rrr_leg1[0][leg]] = -rrr_leg1_qd_1_t
         # (rrr_leg1-qd_2) rate of joint 2
         out_qd[_qd_rrr_leg1[1][leg]] = rrr_leg1_qd_2
     for leg, k in legs[1]:
@@ -3697,39 +3656,40 @@ def _run_joint_rates(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-qd_1) rate of joint 1
-        out_qd[_qd_rrr[0][leg]] = rrr_qd_1
+        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1_t
         # (rrr-qd_2) rate of joint 2
         out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     return ok, (out_qd,)
 
 
-# joint_accelerations: 124 mul, 62 add, 4 div, 2 sqrt, 0 trig
+# joint_accelerations: 112 mul, 58 add, 4 div, 2 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -3799,46 +3759,36 @@ def _run_joint_accelerations(m, X, V, A):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-S_dot) velocity of the connection point
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_S_dot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*t_dot_x - axis_y_rrr_leg1_axes2_x*t_dot_y
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = (
-        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
-            axis_y_rrr_leg1_axes2_x*t_dot_y)
-        )
+        rrr_leg1_qd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y + axis_y_rrr_leg1_axes2_x*t_dot_x
-            - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+            + rrr_leg1_qd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
-        # (rrr_leg1-W_1) centripetal tensor of link 1
-        rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
-        # (rrr_leg1-W_2) centripetal tensor of link 2
-        rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_2 - rrr_leg1_qd_1_t
         # (rrr_leg1-S_ddot) acceleration of the connection point
         rrr_leg1_S_ddot_in_axes2_x = (
         axis_x_rrr_leg1_axes2_x*t_ddot_x - axis_y_rrr_leg1_axes2_x*t_ddot_y
@@ -3847,16 +3797,16 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rrr_leg1_axes2_x*t_ddot_y + axis_y_rrr_leg1_axes2_x*t_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_t = rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+        rrr_leg1_bias_t = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1_t
         rrr_leg1_bias_in_axes2_x = (
-        rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
-            rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1_t*rrr_leg1_qd_1_t -
+            rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
         rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y + rrr_leg1_bias_t
         # (rrr_leg1-qdd_1) acceleration of joint 1
-        rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qdd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_rel_in_axes2_x
         # (rrr_leg1-qdd_2) acceleration of joint 2
         rrr_leg1_qdd_2 = (
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y +
@@ -3904,46 +3854,44 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
-        # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
         rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
         # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
         rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         ok = (
@@ -3957,7 +3905,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 188 mul, 106 add, 4 div, 2 sqrt, 0 trig
+# legs: 178 mul, 102 add, 4 div, 2 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -4032,35 +3980,32 @@ def _run_legs(m, X, V, A):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-S_dot) velocity of the connection point
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
-        rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_S_dot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*t_dot_x - axis_y_rrr_leg1_axes2_x*t_dot_y
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_x = -axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -4071,19 +4016,14 @@ def _run_legs(m, X, V, A):
             axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = (
-        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
-            axis_y_rrr_leg1_axes2_x*t_dot_y)
-        )
+        rrr_leg1_qd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y + axis_y_rrr_leg1_axes2_x*t_dot_x
-            - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+            + rrr_leg1_qd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
-        # (rrr_leg1-W_1) centripetal tensor of link 1
-        rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_2 - rrr_leg1_qd_1_t
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-S_ddot) acceleration of the connection point
@@ -4094,16 +4034,16 @@ def _run_legs(m, X, V, A):
         axis_x_rrr_leg1_axes2_x*t_ddot_y + axis_y_rrr_leg1_axes2_x*t_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_t = rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+        rrr_leg1_bias_t = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1_t
         rrr_leg1_bias_in_axes2_x = (
-        rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
-            rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1_t*rrr_leg1_qd_1_t -
+            rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
         rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y + rrr_leg1_bias_t
         # (rrr_leg1-qdd_1) acceleration of joint 1
-        rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qdd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_rel_in_axes2_x
         # (rrr_leg1-qdd_2) acceleration of joint 2
         rrr_leg1_qdd_2 = (
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y +
@@ -4142,8 +4082,8 @@ def _run_legs(m, X, V, A):
         rrr_leg1_c_t = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x
         rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         rrr_leg1_c_in_axes2_x = (
-        rrr_leg1_c_t + rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_c_t + rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y -
+            inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_in_axes1_z)
         )
         rrr_leg1_c_in_axes2_y = (
@@ -4214,48 +4154,48 @@ def _run_legs(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
-        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
         rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
         # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
         rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
@@ -4283,8 +4223,8 @@ def _run_legs(m, X, V, A):
         rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
         rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
         rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
@@ -4378,8 +4318,8 @@ def _run_potential(m, X):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
         # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
@@ -4387,12 +4327,12 @@ def _run_potential(m, X):
         # (potential) potential energy
         rrr_leg1_potential_t_3 = (
         rrr_leg1_g_in_axes1_x*(rrr_leg1_h_1_in_spec1_x + rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_x +
+            rrr_leg1_h_2_in_spec2_y*rrr_leg1_s_2_t +
             rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t +
-            rrr_leg1_potential_t_2*rrr_leg1_s_1) - rrr_leg1_h_2_in_spec2_y*rrr_leg1_s_2) +
-            rrr_leg1_g_in_axes1_y*(rrr_leg1_h_1_in_spec1_y + rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_y
-            + rrr_leg1_h_2_in_spec2_x*rrr_leg1_s_2 +
+            rrr_leg1_potential_t_2*rrr_leg1_s_1)) + rrr_leg1_g_in_axes1_y*(rrr_leg1_h_1_in_spec1_y
+            + rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_y +
             rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t_2 -
-            rrr_leg1_potential_t*rrr_leg1_s_1))
+            rrr_leg1_potential_t*rrr_leg1_s_1) - rrr_leg1_h_2_in_spec2_x*rrr_leg1_s_2_t)
         )
         ok = (
         ok & (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
@@ -4436,8 +4376,8 @@ def _run_potential(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
@@ -4445,10 +4385,10 @@ def _run_potential(m, X):
         # (potential) potential energy
         rrr_potential_t_3 = (
         rrr_g_in_axes1_x*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
-            rrr_h_2_in_spec2_y*rrr_s_2) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
-            rrr_c_2*rrr_h_2_in_spec2_y + rrr_h_2_in_spec2_x*rrr_s_2 +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 - rrr_potential_t*rrr_s_1))
+            rrr_h_2_in_spec2_y*rrr_s_2_t + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
+            rrr_potential_t_2*rrr_s_1)) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
+            rrr_c_2*rrr_h_2_in_spec2_y + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*rrr_s_1) - rrr_h_2_in_spec2_x*rrr_s_2_t)
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
@@ -4460,7 +4400,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 100 mul, 54 add, 4 div, 5 sqrt, 0 trig
+# condition: 93 mul, 50 add, 4 div, 5 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -4530,35 +4470,29 @@ def _run_condition(m, X):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-S_dot) velocity of the connection point
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
-        rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_x = -axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -4632,21 +4566,20 @@ def _run_condition(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
-        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_pivot_size = abs(rrr_rho2_1)
         rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1150,13 +1161,13 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2, rrr_r_1_in_axes2_x,
-        rrr_r_1_in_axes2_y, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, inv_rrr_r_1_in_axes2_y, rrr_w_1_x,
-        rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y,
-        rrr_mu_1_t_3, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qd_1_t, rrr_qd_2, rrr_bias_t,
-        rrr_bias_in_axes2_x, rrr_c_t, rrr_c_t_2, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx, rrr_Q_xy, rrr_Q_yy,
-        rrr_U_x, rrr_U_y, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x,
-        rrr_c_in_axes2_y;
+    real rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2_t, axis_y_rrr_axes2_x,
+        axis_x_rrr_axes2_x, rrr_d_2_in_axes2_x, rrr_r_1_in_axes2_y, rrr_r_1_in_axes2_x,
+        inv_rrr_r_1_in_axes2_y, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
+        rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_S_ddot_in_axes2_x,
+        rrr_S_ddot_in_axes2_y, rrr_qd_1_t, rrr_qd_2, rrr_bias_t, rrr_bias_in_axes2_x, rrr_c_t,
+        rrr_c_t_2, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_U_x, rrr_U_y,
+        rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_rrr
@@ -1194,21 +1205,20 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
     v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    v->rrr_s_2 =
-        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    v->rrr_s_2_t =
+        m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    /* (rrr-S_dot) velocity of the connection point */
+    const real rrr_S_dot_t = v->rrr_c_1*v->rrr_s_2_t - v->rrr_c_2*v->rrr_s_1;
+    const real rrr_S_dot_t_2 = v->rrr_c_1*v->rrr_c_2 + v->rrr_s_1*v->rrr_s_2_t;
+    v->axis_y_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_xx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_xy[i];
+    v->axis_x_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_yx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_yy[i];
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*v->rrr_s_2;
-    const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
-        v->rrr_c_2*m->rrr_platform_joint_offset_x[i];
-    v->rrr_r_1_in_axes2_x = v->rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*v->rrr_s_2;
-    v->rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*v->rrr_s_2;
+    v->rrr_d_2_in_axes2_x = v->rrr_c_2*m->rrr_joint2_offset_x[i];
+    v->rrr_r_1_in_axes2_y = m->rrr_joint2_offset_x[i]*v->rrr_s_2_t;
+    v->rrr_r_1_in_axes2_x = m->rrr_platform_joint_offset_x[i] + v->rrr_d_2_in_axes2_x;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = v->rrr_c_2*v->rrr_s_1 + v->rrr_c_1*v->rrr_s_2;
-    const real rrr_w_1_t_2 = v->rrr_c_1*v->rrr_c_2 - v->rrr_s_1*v->rrr_s_2;
-    v->axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_xx[i]*rrr_w_1_t;
-    v->axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_yx[i]*rrr_w_1_t;
     v->inv_rrr_r_1_in_axes2_y = 1/v->rrr_r_1_in_axes2_y;
     v->rrr_w_1_x = -v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
     v->rrr_w_1_y = v->axis_y_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
@@ -1238,24 +1248,24 @@ INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
 INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rrr *v)
 {
-    /* (rrr-qd_1) rate of joint 1 */
+    /* (rrr-S_dot) velocity of the connection point */
     const real t_dot_x = V[0*w + j];
     const real t_dot_y = V[1*w + j];
-    v->rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*(v->axis_x_rrr_axes2_x*t_dot_x -
-        v->axis_y_rrr_axes2_x*t_dot_y);
+    const real rrr_S_dot_in_axes2_x = v->axis_x_rrr_axes2_x*t_dot_x -
+        v->axis_y_rrr_axes2_x*t_dot_y;
+    /* (rrr-qd_1) rate of joint 1 */
+    v->rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x;
     /* (rrr-qd_2) rate of joint 2 */
     v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*t_dot_y +
         v->axis_y_rrr_axes2_x*t_dot_x + v->rrr_qd_1_t*v->rrr_r_1_in_axes2_x);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_in_axes1_xx = -v->rrr_qd_1_t*v->rrr_qd_1_t;
     /* (rrr-omega_2) angular velocity of link 2 */
     const real rrr_omega_2_in_axes2_z = v->rrr_qd_2 - v->rrr_qd_1_t;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrr_bias_t = rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
-    v->rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
+    v->rrr_bias_t = rrr_S_dot_in_axes2_x*v->rrr_qd_1_t;
+    v->rrr_bias_in_axes2_x = -v->rrr_d_2_in_axes2_x*v->rrr_qd_1_t*v->rrr_qd_1_t -
+        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
     v->rrr_c_t = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i];
@@ -1302,8 +1312,8 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
     const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
         v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
     v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
-    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
     v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
 }
 
 INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
@@ -1372,6 +1382,22 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
         rrr_G_in_axes2_y;
 }
 
+INLINE void any_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+INLINE void any_place_rrr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1397,16 +1423,6 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void dynamics_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    t->unreachable[k] += o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
@@ -1437,13 +1453,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real sums[5] = {0};
-    real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real sums[5] CLEARED;
+    real terms_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         dynamics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        dynamics_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t n = 0; n < 5; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
@@ -1462,7 +1478,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1486,12 +1502,6 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
     *t)
 {
@@ -1511,13 +1521,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real sums[3] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real sums[3] CLEARED;
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         M_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        M_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
@@ -1536,7 +1546,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rrr(m, LANES, i, k, k, LANES, 1, X, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1560,12 +1570,6 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
     *t)
 {
@@ -1582,13 +1586,13 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real sums[2] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real sums[2] CLEARED;
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         Z_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        Z_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
@@ -1607,7 +1611,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rrr(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1630,24 +1634,14 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void H_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    t->unreachable[k] += o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         H_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), X, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        H_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
 }
 
@@ -1660,7 +1654,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
             H_legs_rrr(m, LANES, i, k, k, LANES, X, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
         }
     }
 }
@@ -1732,10 +1726,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[2] = {0}, sums[2] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[4*LEGS(LEGS_OF_rrr)] = {0};
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        required_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr, o_rrr);
+    real s[2] CLEARED, sums[2] CLEARED;
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[4*LEGS(LEGS_OF_rrr)] CLEARED;
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            required_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr,
+                o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         required_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
@@ -1778,7 +1775,7 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     /* (rrr-q_1) displacement of joint 1 */
     const real rrr_q_1 = angle(v.rrr_s_1, v.rrr_c_1);
     /* (rrr-q_2) displacement of joint 2 */
-    const real rrr_q_2 = angle(v.rrr_s_2, v.rrr_c_2);
+    const real rrr_q_2 = angle(-v.rrr_s_2_t, v.rrr_c_2);
     /* (rrr-q_1) */
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
@@ -1800,7 +1797,7 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         inverse_kinematics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), X, o_rrr);
     }
@@ -1853,7 +1850,7 @@ INLINE void joint_rates_place_rrr(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         joint_rates_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), X, V, o_rrr);
     }
@@ -1908,7 +1905,7 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         joint_accelerations_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
     }
@@ -1975,11 +1972,13 @@ INLINE void legs_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 6);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        legs_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            legs_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         legs_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, leg_force, actuator, t);
@@ -2006,20 +2005,14 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrr_potential_t_3 = v.rrr_g_in_axes1_x*(m->rrr_h_1_in_spec1_x[i] +
         v.rrr_c_2*m->rrr_h_2_in_spec2_x[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
-        m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
+        m->rrr_potential_t_2[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2_t) +
         v.rrr_g_in_axes1_y*(m->rrr_h_1_in_spec1_y[i] + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
-        m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
+        m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
     gather(&terms[0*count + k], add, rrr_potential_t_3);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -2034,13 +2027,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[1] = {0}, sums[1] = {0};
-    real terms_rrr[LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        potential_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
+    real s[1] CLEARED, sums[1] CLEARED;
+    real terms_rrr[LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            potential_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        potential_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
@@ -2113,8 +2108,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real sums[1] = {0};
-    real terms_rrr[LEGS(LEGS_OF_rrr)] = {0}, o_rrr[7*LEGS(LEGS_OF_rrr)] = {0};
+    real sums[1] CLEARED;
+    real terms_rrr[LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[7*LEGS(LEGS_OF_rrr)] CLEARED;
     condition_before(m, 1, 0, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         condition_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
@@ -2341,7 +2336,7 @@ int fivebar_revolute_inverse_dynamics(const prepared *m, const real *X, const re
     *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -2387,8 +2382,8 @@ int fivebar_revolute_forward_dynamics(const prepared *m, const real *X, const re
     *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -2457,7 +2452,7 @@ int fivebar_revolute_leg_reactions(const prepared *m, const real *X, const real 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[6] = {0}, forces[3*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[6] CLEARED, forces[3*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -2474,7 +2469,7 @@ int fivebar_revolute_leg_reactions(const prepared *m, const real *X, const real 
 int fivebar_revolute_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
     real *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2492,7 +2487,7 @@ int fivebar_revolute_energy(const prepared *m, const real *X, const real *V, rea
 
 int fivebar_revolute_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, reach[NL] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, reach[NL] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2512,8 +2507,8 @@ int fivebar_revolute_condition(const prepared *m, const real *X, real *sigma_out
 int fivebar_revolute_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
-        {0}, measure[1] = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
+        singular_values_1[NV] = {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2534,8 +2529,8 @@ int fivebar_revolute_manipulability(const prepared *m, const real *X, real *meas
 int fivebar_revolute_singularity_distance(const prepared *m, const real *X, real *actuators_out,
     real *legs_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
-        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
+        singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2557,8 +2552,8 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     *residual_out)
 {
     static const size_t places_residual[] = {0, 1};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[2] = {0}, subtract_1[NU] = {0}, residual[NU] =
-        {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[2] = {0}, subtract_1[NU] CLEARED, residual[NU]
+        CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -2647,7 +2642,7 @@ int fivebar_revolute_dissipation(const prepared *m, const real *X, const real *V
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -2660,7 +2655,7 @@ int fivebar_revolute_dissipation(const prepared *m, const real *X, const real *V
 
 int fivebar_revolute_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2672,7 +2667,7 @@ int fivebar_revolute_momentum(const prepared *m, const real *X, const real *V, r
 int fivebar_revolute_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2687,7 +2682,7 @@ int fivebar_revolute_joint_margins(const prepared *m, const real *X, real *margi
 
 int fivebar_revolute_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2701,7 +2696,7 @@ int fivebar_revolute_within_limits(const prepared *m, const real *X, real *withi
 
 int fivebar_revolute_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2712,7 +2707,7 @@ int fivebar_revolute_actuator_positions(const prepared *m, const real *X, real *
 
 int fivebar_revolute_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2724,7 +2719,7 @@ int fivebar_revolute_actuator_rates(const prepared *m, const real *X, const real
 int fivebar_revolute_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -2736,7 +2731,7 @@ int fivebar_revolute_actuator_accelerations(const prepared *m, const real *X, co
 int fivebar_revolute_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -2748,7 +2743,7 @@ int fivebar_revolute_power(const prepared *m, const real *X, const real *V, cons
 
 int fivebar_revolute_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real X_moved[NQ] = {0};
+    real X_moved[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -2760,7 +2755,7 @@ int fivebar_revolute_retract(const real *X, const real *step, real *X_moved_out)
 
 int fivebar_revolute_difference(const real *X0, const real *X1, real *step_out)
 {
-    real step[NV] = {0};
+    real step[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -2772,7 +2767,7 @@ int fivebar_revolute_difference(const real *X0, const real *X1, real *step_out)
 
 int fivebar_revolute_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real subtract_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    real subtract_1[NQ] CLEARED, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -129,13 +129,13 @@ extern const char *const fivebar_revolute_ACTUATOR_NAMES[FIVEBAR_REVOLUTE_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revolute_model *model);
 
-/* Inertia matrix M. 124 mul, 80 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 116 mul, 76 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int fivebar_revolute_M(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
     fivebar_revolute_real *M);
 size_t fivebar_revolute_M_batch(const fivebar_revolute_model *model, size_t n, const
     fivebar_revolute_real *X, fivebar_revolute_real *M, int *status);
 
-/* Velocity and gravity terms Z. 166 mul, 94 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 156 mul, 90 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int fivebar_revolute_Z(const fivebar_revolute_model *model, const fivebar_revolute_real *X, const
     fivebar_revolute_real *V, fivebar_revolute_real *Z);
@@ -143,7 +143,7 @@ size_t fivebar_revolute_Z_batch(const fivebar_revolute_model *model, size_t n, c
     fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *Z, int
     *status);
 
-/* Force transformation H: actuators to task space. 82 mul, 40 add, 4 div, 2 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 76 mul, 36 add, 4 div, 2 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int fivebar_revolute_H(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
     fivebar_revolute_real *H);
@@ -157,7 +157,7 @@ int fivebar_revolute_inverse_kinematics(const fivebar_revolute_model *model, con
 size_t fivebar_revolute_inverse_kinematics_batch(const fivebar_revolute_model *model, size_t n,
     const fivebar_revolute_real *X, fivebar_revolute_real *q, int *status);
 
-/* Rates of all joints. 96 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 88 mul, 44 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int fivebar_revolute_joint_rates(const fivebar_revolute_model *model, const fivebar_revolute_real
     *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates);
@@ -165,7 +165,7 @@ size_t fivebar_revolute_joint_rates_batch(const fivebar_revolute_model *model, s
     fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates, int
     *status);
 
-/* Accelerations of all joints. 124 mul, 62 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 112 mul, 58 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int fivebar_revolute_joint_accelerations(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
@@ -174,7 +174,7 @@ size_t fivebar_revolute_joint_accelerations_batch(const fivebar_revolute_model *
     const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
     *A, fivebar_revolute_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 212 mul, 132 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 202 mul, 128 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int fivebar_revolute_dynamics(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
     const fivebar_revolute_real *V, fivebar_revolute_real *M, fivebar_revolute_real *Z,
@@ -183,7 +183,7 @@ size_t fivebar_revolute_dynamics_batch(const fivebar_revolute_model *model, size
     fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *M,
     fivebar_revolute_real *Z, fivebar_revolute_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 180 mul, 108 add, 4 div, 2 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 170 mul, 104 add, 4 div, 2 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int fivebar_revolute_inverse_dynamics(const fivebar_revolute_model *model, const
@@ -193,7 +193,7 @@ size_t fivebar_revolute_inverse_dynamics_batch(const fivebar_revolute_model *mod
     const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
     *A, const fivebar_revolute_real *wrench, fivebar_revolute_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 212 mul, 132 add, 4 div, 2 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 202 mul, 128 add, 4 div, 2 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int fivebar_revolute_forward_dynamics(const fivebar_revolute_model *model, const
@@ -214,7 +214,7 @@ size_t fivebar_revolute_complete_acceleration_batch(const fivebar_revolute_model
     *A, const fivebar_revolute_real *wrench, fivebar_revolute_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 182 mul, 104 add, 4 div, 2 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 172 mul, 100 add, 4 div, 2 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (2 x 3). */
 int fivebar_revolute_leg_reactions(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
@@ -235,7 +235,7 @@ size_t fivebar_revolute_energy_batch(const fivebar_revolute_model *model, size_t
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 91 mul, 50 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   legs. 85 mul, 46 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
    (2), legs (2). */
 int fivebar_revolute_condition(const fivebar_revolute_model *model, const fivebar_revolute_real
     *X, fivebar_revolute_real *sigma, fivebar_revolute_real *legs);
@@ -244,7 +244,7 @@ size_t fivebar_revolute_condition_batch(const fivebar_revolute_model *model, siz
     *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 91 mul, 50 add, 4 div, 5 sqrt, 0 trig; the singular values
+   the least over the largest of them. 85 mul, 46 add, 4 div, 5 sqrt, 0 trig; the singular values
    apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int fivebar_revolute_manipulability(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, fivebar_revolute_real *measure, fivebar_revolute_real *isotropy);
@@ -252,8 +252,8 @@ size_t fivebar_revolute_manipulability_batch(const fivebar_revolute_model *model
     fivebar_revolute_real *X, fivebar_revolute_real *measure, fivebar_revolute_real *isotropy, int
     *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 91
-   mul, 50 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 85
+   mul, 46 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
    legs (1). */
 int fivebar_revolute_singularity_distance(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, fivebar_revolute_real *actuators, fivebar_revolute_real *legs);
@@ -278,7 +278,7 @@ size_t fivebar_revolute_dissipation_batch(const fivebar_revolute_model *model, s
     fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *dissipation,
     int *status);
 
-/* Generalised momentum M V. 124 mul, 80 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 116 mul, 76 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int fivebar_revolute_momentum(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
     const fivebar_revolute_real *V, fivebar_revolute_real *momentum);
@@ -307,7 +307,7 @@ int fivebar_revolute_actuator_positions(const fivebar_revolute_model *model, con
 size_t fivebar_revolute_actuator_positions_batch(const fivebar_revolute_model *model, size_t n,
     const fivebar_revolute_real *X, fivebar_revolute_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 96 mul, 48 add, 4 div, 2 sqrt, 0 trig. In: X
+/* Rates of the actuated joints, in the order of tau. 88 mul, 44 add, 4 div, 2 sqrt, 0 trig. In: X
    (NQ), V (NV). Out: rates (NU). */
 int fivebar_revolute_actuator_rates(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates);
@@ -315,7 +315,7 @@ size_t fivebar_revolute_actuator_rates_batch(const fivebar_revolute_model *model
     fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates, int
     *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 124 mul, 62 add, 4 div, 2 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 112 mul, 58 add, 4 div, 2 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int fivebar_revolute_actuator_accelerations(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,

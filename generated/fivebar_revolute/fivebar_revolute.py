@@ -1597,7 +1597,7 @@ def _at(m, function, X, given, at):
     return found
 
 
-# dynamics: 212 mul, 132 add, 4 div, 2 sqrt, 0 trig
+# dynamics: 202 mul, 128 add, 4 div, 2 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
@@ -1654,43 +1654,41 @@ def _run_dynamics(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = (
-        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
-        )
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
             rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-qdd_1_o) remainder of: acceleration of joint 1
         rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x
@@ -1751,8 +1749,8 @@ def _run_dynamics(m, X, V):
         rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         # (rrr-U) velocity and gravity terms of the leg force
         rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
         rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y
@@ -1787,7 +1785,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 124 mul, 80 add, 4 div, 2 sqrt, 0 trig
+# M: 116 mul, 76 add, 4 div, 2 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -1836,19 +1834,19 @@ def _run_M(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
@@ -1876,8 +1874,8 @@ def _run_M(m, X):
         rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
@@ -1897,7 +1895,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 166 mul, 94 add, 4 div, 2 sqrt, 0 trig
+# Z: 156 mul, 90 add, 4 div, 2 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -1951,39 +1949,37 @@ def _run_Z(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = (
-        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
-        )
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
             rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-qdd_1_o) remainder of: acceleration of joint 1
         rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x
@@ -2039,7 +2035,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 82 mul, 40 add, 4 div, 2 sqrt, 0 trig
+# H: 76 mul, 36 add, 4 div, 2 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -2083,18 +2079,17 @@ def _run_H(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
@@ -2108,7 +2103,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 180 mul, 108 add, 4 div, 2 sqrt, 0 trig
+# required: 170 mul, 104 add, 4 div, 2 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -2174,33 +2169,30 @@ def _run_required(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = (
-        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
-        )
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
             rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
@@ -2209,9 +2201,10 @@ def _run_required(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
@@ -2319,11 +2312,11 @@ def _run_inverse_kinematics(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-q_2) displacement of joint 2
-        rrr_q_2 = atan2(rrr_s_2, rrr_c_2)
+        rrr_q_2 = atan2(-rrr_s_2_t, rrr_c_2)
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
@@ -2332,7 +2325,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 96 mul, 48 add, 4 div, 2 sqrt, 0 trig
+# joint_rates: 88 mul, 44 add, 4 div, 2 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -2382,24 +2375,23 @@ def _run_joint_rates(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = (
-        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
-        )
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
@@ -2416,7 +2408,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 124 mul, 62 add, 4 div, 2 sqrt, 0 trig
+# joint_accelerations: 112 mul, 58 add, 4 div, 2 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -2471,42 +2463,38 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = (
-        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
-        )
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
             rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
-        # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
@@ -2526,7 +2514,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 182 mul, 104 add, 4 div, 2 sqrt, 0 trig
+# legs: 172 mul, 100 add, 4 div, 2 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -2585,33 +2573,30 @@ def _run_legs(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = (
-        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
-        )
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
             rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
@@ -2620,9 +2605,10 @@ def _run_legs(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_t = rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
@@ -2734,8 +2720,8 @@ def _run_potential(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
@@ -2743,10 +2729,10 @@ def _run_potential(m, X):
         # (potential) potential energy
         rrr_potential_t_3 = (
         rrr_g_in_axes1_x*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
-            rrr_h_2_in_spec2_y*rrr_s_2) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
-            rrr_c_2*rrr_h_2_in_spec2_y + rrr_h_2_in_spec2_x*rrr_s_2 +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 - rrr_potential_t*rrr_s_1))
+            rrr_h_2_in_spec2_y*rrr_s_2_t + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
+            rrr_potential_t_2*rrr_s_1)) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
+            rrr_c_2*rrr_h_2_in_spec2_y + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*rrr_s_1) - rrr_h_2_in_spec2_x*rrr_s_2_t)
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
@@ -2758,7 +2744,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 91 mul, 50 add, 4 div, 5 sqrt, 0 trig
+# condition: 85 mul, 46 add, 4 div, 5 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -2813,18 +2799,17 @@ def _run_condition(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y

@@ -117,7 +117,7 @@ typedef struct {
             pus_potential_t_2[8], pus_size[8], pus_size_t[8], pus_size_t_2[8], pus_w_3_in_axes3_y[8];
     hexaglide_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } hexaglide_model;
@@ -136,12 +136,12 @@ extern const char *const hexaglide_ACTUATOR_NAMES[HEXAGLIDE_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model);
 
-/* Inertia matrix M. 1041 mul, 753 add, 18 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1020 mul, 754 add, 18 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hexaglide_M(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real *M);
 size_t hexaglide_M_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
     hexaglide_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1128 mul, 840 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1125 mul, 840 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hexaglide_Z(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real *V,
     hexaglide_real *Z);
@@ -176,14 +176,14 @@ size_t hexaglide_joint_accelerations_batch(const hexaglide_model *model, size_t 
     hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, hexaglide_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1830 mul, 1371 add, 18 div, 12 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1809 mul, 1372 add, 18 div, 12 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexaglide_dynamics(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
     *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H);
 size_t hexaglide_dynamics_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
     const hexaglide_real *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1215 mul, 915 add, 18 div, 12 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1206 mul, 909 add, 18 div, 12 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hexaglide_inverse_dynamics(const hexaglide_model *model, const hexaglide_real *X, const
@@ -192,7 +192,7 @@ size_t hexaglide_inverse_dynamics_batch(const hexaglide_model *model, size_t n, 
     hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, const hexaglide_real
     *wrench, hexaglide_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1830 mul, 1371 add, 18 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 1809 mul, 1372 add, 18 div, 12
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexaglide_forward_dynamics(const hexaglide_model *model, const hexaglide_real *X, const
@@ -269,7 +269,7 @@ int hexaglide_dissipation(const hexaglide_model *model, const hexaglide_real *X,
 size_t hexaglide_dissipation_batch(const hexaglide_model *model, size_t n, const hexaglide_real
     *X, const hexaglide_real *V, hexaglide_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1041 mul, 753 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 1020 mul, 754 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hexaglide_momentum(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
     *V, hexaglide_real *momentum);

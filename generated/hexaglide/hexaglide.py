@@ -677,6 +677,7 @@ def _prepare(p):
     J_star_t_12 = 0.5*J_star_t_11
     J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
+    J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
@@ -690,9 +691,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_pus,
         (inv_pus_size_t, pus_J_3_in_spec3_xx, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz,
@@ -712,8 +713,8 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_pus,
         (inv_pus_size_t, pus_J_3_in_spec3_xx, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz,
@@ -731,9 +732,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_pus,
         (inv_pus_size_t, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz, pus_J_3_in_spec3_yz,
@@ -1852,14 +1853,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1830 mul, 1371 add, 18 div, 12 sqrt, 0 trig
+# dynamics: 1809 mul, 1372 add, 18 div, 12 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1926,13 +1927,12 @@ def _run_dynamics(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -1948,11 +1948,11 @@ def _run_dynamics(m, X, V):
     Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
-    M_tt_pus_xx, M_tt_xy, M_tt_xz, M_tt_pus_yy, M_tt_yz, M_tt_pus_zz, M_ta_xx, M_ta_pus_xy,
-        M_ta_pus_xz, M_ta_pus_yx, M_ta_yy, M_ta_pus_yz, M_ta_pus_zx, M_ta_pus_zy, M_ta_zz,
-        M_aa_pus_xx, M_aa_pus_xy, M_aa_pus_xz, M_aa_pus_yy, M_aa_pus_yz, M_aa_pus_zz, Z_t_pus_x,
-        Z_t_pus_y, Z_t_pus_z, Z_a_pus_x, Z_a_pus_y, Z_a_pus_z,
-    ) = [0.0] * 27
+    M_tt_pus_xx, M_tt_xy, M_tt_xz, M_tt_pus_yy, M_tt_yz, M_tt_t, M_ta_yy, M_ta_zz, M_ta_pus_xy,
+        M_ta_t, M_ta_t_2, M_ta_pus_yz, M_ta_t_3, M_ta_pus_zy, M_aa_pus_xx, M_aa_pus_xy,
+        M_aa_pus_xz, M_aa_pus_yy, M_aa_t, M_aa_pus_zz, Z_t_pus_x, Z_t_pus_y, Z_t_pus_z, Z_a_pus_x,
+        Z_a_pus_y, Z_a_pus_z,
+    ) = [0.0] * 26
     for leg, k in legs[0]:
         (
         inv_pus_size_t, pus_J_3_in_spec3_xx, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz,
@@ -2205,6 +2205,10 @@ def _run_dynamics(m, X, V):
         pus_d_alpha_3_t*pus_h_3_in_spec3_y - pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_x -
             pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_x
         )
+        pus_d_c_in_axes3_zz = (
+        pus_e_2_in_axes3_x*pus_h_3_in_spec3_z*pus_w_2_in_axes3_z -
+            pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_z - pus_d_alpha_3_t*pus_h_3_in_spec3_x
+        )
         # (pus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         pus_c_o_in_axes3_x = (
         pus_c_t + pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z -
@@ -2223,11 +2227,7 @@ def _run_dynamics(m, X, V):
         # (pus-Q) inertia of the leg at the connection point, without the mass gathered there
         pus_Q_t = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy
         pus_Q_t_2 = 0.5*pus_Q_t
-        pus_Q_t_3 = (
-        pus_d_c_in_axes3_xx + pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_z +
-            pus_d_alpha_3_t*pus_h_3_in_spec3_x -
-            pus_e_2_in_axes3_x*pus_h_3_in_spec3_z*pus_w_2_in_axes3_z
-        )
+        pus_Q_t_3 = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_zz
         pus_Q_t_4 = 0.5*pus_Q_t_3
         pus_Q_t_5 = (
         axis_y_pus_axes3_x*pus_Q_t_2 + axis_z_pus_axes3_x*pus_d_G_in_axes3_zy -
@@ -2246,6 +2246,11 @@ def _run_dynamics(m, X, V):
         pus_Q_t_10 = axis_z_pus_axes3_z*pus_Q_t_4 - axis_x_pus_axes3_z*pus_d_c_in_axes3_xz
         pus_Q_t_11 = axis_y_pus_axes3_x*pus_Q_t_5 + axis_z_pus_axes3_x*pus_Q_t_8
         pus_Q_xx = 2.0*pus_Q_t_11 - pus_d_c_in_axes3_xx
+        pus_Q_t_12 = axis_y_pus_axes3_y*pus_Q_t_6 + axis_z_pus_axes3_y*pus_Q_t_9
+        pus_Q_yy = 2.0*pus_Q_t_12 - pus_d_c_in_axes3_xx
+        pus_Q_t_13 = (
+        pus_Q_xx + pus_Q_yy + pus_d_c_in_axes3_xx + pus_d_c_in_axes3_yy + pus_d_c_in_axes3_zz
+        )
         pus_Q_xy = (
         axis_y_pus_axes3_x*pus_Q_t_6 + axis_y_pus_axes3_y*pus_Q_t_5 + axis_z_pus_axes3_x*pus_Q_t_9
             + axis_z_pus_axes3_y*pus_Q_t_8
@@ -2254,14 +2259,10 @@ def _run_dynamics(m, X, V):
         axis_y_pus_axes3_x*pus_Q_t_7 + axis_y_pus_axes3_z*pus_Q_t_5 +
             axis_z_pus_axes3_x*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_8
         )
-        pus_Q_t_12 = axis_y_pus_axes3_y*pus_Q_t_6 + axis_z_pus_axes3_y*pus_Q_t_9
-        pus_Q_yy = 2.0*pus_Q_t_12 - pus_d_c_in_axes3_xx
         pus_Q_yz = (
         axis_y_pus_axes3_y*pus_Q_t_7 + axis_y_pus_axes3_z*pus_Q_t_6 +
             axis_z_pus_axes3_y*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_9
         )
-        pus_Q_t_13 = axis_y_pus_axes3_z*pus_Q_t_7 + axis_z_pus_axes3_z*pus_Q_t_10
-        pus_Q_zz = 2.0*pus_Q_t_13 - pus_d_c_in_axes3_xx
         # (pus-U) velocity and gravity terms of the leg force
         pus_U_x = (
         -axis_x_pus_axes3_x*pus_c_o_in_axes3_x - axis_y_pus_axes3_x*pus_c_o_in_axes3_y -
@@ -2276,25 +2277,22 @@ def _run_dynamics(m, X, V):
             axis_z_pus_axes3_z*pus_c_o_in_axes3_z
         )
         # (M_ta) coupling block of M
-        pus_M_ta_t = pus_Q_xy*pus_q_z
-        pus_M_ta_t_2 = pus_Q_xz*pus_q_y
-        pus_M_ta_t_3 = pus_M_ta_t_2 - pus_M_ta_t
-        pus_M_ta_t_4 = pus_Q_xx*pus_q_z - pus_Q_xz*pus_q_x
-        pus_M_ta_t_5 = pus_Q_xy*pus_q_x - pus_Q_xx*pus_q_y
-        pus_M_ta_t_6 = pus_Q_yz*pus_q_y - pus_Q_yy*pus_q_z
-        pus_M_ta_t_7 = pus_Q_yz*pus_q_x
-        pus_M_ta_t_8 = pus_M_ta_t - pus_M_ta_t_7
-        pus_M_ta_t_9 = pus_Q_yy*pus_q_x - pus_Q_xy*pus_q_y
-        pus_M_ta_t_10 = pus_Q_zz*pus_q_y - pus_Q_yz*pus_q_z
-        pus_M_ta_t_11 = pus_Q_xz*pus_q_z - pus_Q_zz*pus_q_x
-        pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2
+        pus_M_ta_t = pus_Q_xx*pus_q_z - pus_Q_xz*pus_q_x
+        pus_M_ta_t_2 = pus_Q_xx*pus_q_y - pus_Q_xy*pus_q_x
+        pus_M_ta_t_3 = pus_Q_yy*pus_q_z - pus_Q_yz*pus_q_y
+        pus_M_ta_t_4 = pus_Q_yz*pus_q_x
+        pus_M_ta_t_5 = pus_Q_xy*pus_q_z - pus_M_ta_t_4
+        pus_M_ta_t_6 = pus_Q_yy*pus_q_x - pus_Q_xy*pus_q_y
+        pus_M_ta_t_7 = pus_Q_t_13*pus_q_y + pus_Q_yz*pus_q_z
+        pus_M_ta_t_8 = pus_Q_t_13*pus_q_x + pus_Q_xz*pus_q_z
+        pus_M_ta_t_9 = pus_M_ta_t_4 - pus_Q_xz*pus_q_y
         # (M_aa) rotational block of M
-        pus_M_aa_t = pus_M_ta_t_10*pus_q_y - pus_M_ta_t_6*pus_q_z
-        pus_M_aa_t_2 = pus_M_ta_t_11*pus_q_y - pus_M_ta_t_8*pus_q_z
-        pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_y - pus_M_ta_t_9*pus_q_z
-        pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_z - pus_M_ta_t_11*pus_q_x
-        pus_M_aa_t_5 = pus_M_ta_t_5*pus_q_z - pus_M_ta_t_12*pus_q_x
-        pus_M_aa_t_6 = pus_M_ta_t_9*pus_q_x - pus_M_ta_t_5*pus_q_y
+        pus_M_aa_t = pus_M_ta_t_3*pus_q_z - pus_M_ta_t_7*pus_q_y
+        pus_M_aa_t_2 = pus_M_ta_t_8*pus_q_y - pus_M_ta_t_5*pus_q_z
+        pus_M_aa_t_3 = pus_M_ta_t_9*pus_q_y - pus_M_ta_t_6*pus_q_z
+        pus_M_aa_t_4 = pus_M_ta_t*pus_q_z - pus_M_ta_t_8*pus_q_x
+        pus_M_aa_t_5 = pus_M_ta_t_2*pus_q_z + pus_M_ta_t_9*pus_q_x
+        pus_M_aa_t_6 = pus_M_ta_t_2*pus_q_y + pus_M_ta_t_6*pus_q_x
         # (Z_a) rotational part of Z
         pus_Z_a_t = pus_U_z*pus_q_y - pus_U_y*pus_q_z
         pus_Z_a_t_2 = pus_U_x*pus_q_z - pus_U_z*pus_q_x
@@ -2314,23 +2312,22 @@ def _run_dynamics(m, X, V):
         M_tt_xz += pus_Q_xz
         M_tt_pus_yy += pus_Q_yy
         M_tt_yz += pus_Q_yz
-        M_tt_pus_zz += pus_Q_zz
+        M_tt_t += pus_Q_t_13
         # (M_ta) coupling block of M
-        M_ta_xx += pus_M_ta_t_3
-        M_ta_pus_xy += pus_M_ta_t_4
-        M_ta_pus_xz += pus_M_ta_t_5
-        M_ta_pus_yx += pus_M_ta_t_6
-        M_ta_yy += pus_M_ta_t_8
-        M_ta_pus_yz += pus_M_ta_t_9
-        M_ta_pus_zx += pus_M_ta_t_10
-        M_ta_pus_zy += pus_M_ta_t_11
-        M_ta_zz += pus_M_ta_t_12
+        M_ta_yy += pus_M_ta_t_5
+        M_ta_zz += pus_M_ta_t_9
+        M_ta_pus_xy += pus_M_ta_t
+        M_ta_t += pus_M_ta_t_2
+        M_ta_t_2 += pus_M_ta_t_3
+        M_ta_pus_yz += pus_M_ta_t_6
+        M_ta_t_3 += pus_M_ta_t_7
+        M_ta_pus_zy += pus_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_pus_xx += pus_M_aa_t
         M_aa_pus_xy += pus_M_aa_t_2
         M_aa_pus_xz += pus_M_aa_t_3
         M_aa_pus_yy += pus_M_aa_t_4
-        M_aa_pus_yz += pus_M_aa_t_5
+        M_aa_t += pus_M_aa_t_5
         M_aa_pus_zz += pus_M_aa_t_6
         # (Z_t) translational part of Z
         Z_t_pus_x += pus_U_x
@@ -2351,20 +2348,21 @@ def _run_dynamics(m, X, V):
     # (M_tt) translational block of M
     M_tt_xx = M_tt_pus_xx + m_star
     M_tt_yy = M_tt_pus_yy + m_star
-    M_tt_zz = M_tt_pus_zz + m_star
+    M_tt_zz = m_star - M_tt_t
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_pus_xy + h_star_z
-    M_ta_xz = M_ta_pus_xz - h_star_y
-    M_ta_yx = M_ta_pus_yx - h_star_z
+    M_ta_xz = -M_ta_t - h_star_y
+    M_ta_yx = -M_ta_t_2 - h_star_z
     M_ta_yz = M_ta_pus_yz + h_star_x
-    M_ta_zx = M_ta_pus_zx + h_star_y
+    M_ta_zx = h_star_y - M_ta_t_3
     M_ta_zy = M_ta_pus_zy - h_star_x
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_pus_xx
     M_aa_xy = J_star_xy + M_aa_pus_xy
     M_aa_xz = J_star_xz + M_aa_pus_xz
     M_aa_yy = J_star_yy + M_aa_pus_yy
-    M_aa_yz = J_star_yz + M_aa_pus_yz
+    M_aa_yz = J_star_yz - M_aa_t
     M_aa_zz = J_star_zz + M_aa_pus_zz
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_pus_x
@@ -2424,13 +2422,13 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 1041 mul, 753 add, 18 div, 12 sqrt, 0 trig
+# M: 1020 mul, 754 add, 18 div, 12 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        J_star_t_12, J_star_t_14, J_star_t_15, h_star_in_platform_x, h_star_in_platform_y,
         h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -2483,18 +2481,17 @@ def _run_M(m, X):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
-    M_tt_pus_xx, M_tt_xy, M_tt_xz, M_tt_pus_yy, M_tt_yz, M_tt_pus_zz, M_ta_xx, M_ta_pus_xy,
-        M_ta_pus_xz, M_ta_pus_yx, M_ta_yy, M_ta_pus_yz, M_ta_pus_zx, M_ta_pus_zy, M_ta_zz,
-        M_aa_pus_xx, M_aa_pus_xy, M_aa_pus_xz, M_aa_pus_yy, M_aa_pus_yz, M_aa_pus_zz,
-    ) = [0.0] * 21
+    M_tt_pus_xx, M_tt_xy, M_tt_xz, M_tt_pus_yy, M_tt_yz, M_tt_t, M_ta_yy, M_ta_zz, M_ta_pus_xy,
+        M_ta_t, M_ta_t_2, M_ta_pus_yz, M_ta_t_3, M_ta_pus_zy, M_aa_pus_xx, M_aa_pus_xy,
+        M_aa_pus_xz, M_aa_pus_yy, M_aa_t, M_aa_pus_zz,
+    ) = [0.0] * 20
     for leg, k in legs[0]:
         (
         inv_pus_size_t, pus_J_3_in_spec3_xx, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz,
@@ -2624,14 +2621,14 @@ def _run_M(m, X):
         pus_d_alpha_3_t*pus_h_3_in_spec3_y - pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_x -
             pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_x
         )
+        pus_d_c_in_axes3_zz = (
+        pus_e_2_in_axes3_x*pus_h_3_in_spec3_z*pus_w_2_in_axes3_z -
+            pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_z - pus_d_alpha_3_t*pus_h_3_in_spec3_x
+        )
         # (pus-Q) inertia of the leg at the connection point, without the mass gathered there
         pus_Q_t = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy
         pus_Q_t_2 = 0.5*pus_Q_t
-        pus_Q_t_3 = (
-        pus_d_c_in_axes3_xx + pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_z +
-            pus_d_alpha_3_t*pus_h_3_in_spec3_x -
-            pus_e_2_in_axes3_x*pus_h_3_in_spec3_z*pus_w_2_in_axes3_z
-        )
+        pus_Q_t_3 = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_zz
         pus_Q_t_4 = 0.5*pus_Q_t_3
         pus_Q_t_5 = (
         axis_y_pus_axes3_x*pus_Q_t_2 + axis_z_pus_axes3_x*pus_d_G_in_axes3_zy -
@@ -2650,6 +2647,11 @@ def _run_M(m, X):
         pus_Q_t_10 = axis_z_pus_axes3_z*pus_Q_t_4 - axis_x_pus_axes3_z*pus_d_c_in_axes3_xz
         pus_Q_t_11 = axis_y_pus_axes3_x*pus_Q_t_5 + axis_z_pus_axes3_x*pus_Q_t_8
         pus_Q_xx = 2.0*pus_Q_t_11 - pus_d_c_in_axes3_xx
+        pus_Q_t_12 = axis_y_pus_axes3_y*pus_Q_t_6 + axis_z_pus_axes3_y*pus_Q_t_9
+        pus_Q_yy = 2.0*pus_Q_t_12 - pus_d_c_in_axes3_xx
+        pus_Q_t_13 = (
+        pus_Q_xx + pus_Q_yy + pus_d_c_in_axes3_xx + pus_d_c_in_axes3_yy + pus_d_c_in_axes3_zz
+        )
         pus_Q_xy = (
         axis_y_pus_axes3_x*pus_Q_t_6 + axis_y_pus_axes3_y*pus_Q_t_5 + axis_z_pus_axes3_x*pus_Q_t_9
             + axis_z_pus_axes3_y*pus_Q_t_8
@@ -2658,34 +2660,27 @@ def _run_M(m, X):
         axis_y_pus_axes3_x*pus_Q_t_7 + axis_y_pus_axes3_z*pus_Q_t_5 +
             axis_z_pus_axes3_x*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_8
         )
-        pus_Q_t_12 = axis_y_pus_axes3_y*pus_Q_t_6 + axis_z_pus_axes3_y*pus_Q_t_9
-        pus_Q_yy = 2.0*pus_Q_t_12 - pus_d_c_in_axes3_xx
         pus_Q_yz = (
         axis_y_pus_axes3_y*pus_Q_t_7 + axis_y_pus_axes3_z*pus_Q_t_6 +
             axis_z_pus_axes3_y*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_9
         )
-        pus_Q_t_13 = axis_y_pus_axes3_z*pus_Q_t_7 + axis_z_pus_axes3_z*pus_Q_t_10
-        pus_Q_zz = 2.0*pus_Q_t_13 - pus_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        pus_M_ta_t = pus_Q_xy*pus_q_z
-        pus_M_ta_t_2 = pus_Q_xz*pus_q_y
-        pus_M_ta_t_3 = pus_M_ta_t_2 - pus_M_ta_t
-        pus_M_ta_t_4 = pus_Q_xx*pus_q_z - pus_Q_xz*pus_q_x
-        pus_M_ta_t_5 = pus_Q_xy*pus_q_x - pus_Q_xx*pus_q_y
-        pus_M_ta_t_6 = pus_Q_yz*pus_q_y - pus_Q_yy*pus_q_z
-        pus_M_ta_t_7 = pus_Q_yz*pus_q_x
-        pus_M_ta_t_8 = pus_M_ta_t - pus_M_ta_t_7
-        pus_M_ta_t_9 = pus_Q_yy*pus_q_x - pus_Q_xy*pus_q_y
-        pus_M_ta_t_10 = pus_Q_zz*pus_q_y - pus_Q_yz*pus_q_z
-        pus_M_ta_t_11 = pus_Q_xz*pus_q_z - pus_Q_zz*pus_q_x
-        pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2
+        pus_M_ta_t = pus_Q_xx*pus_q_z - pus_Q_xz*pus_q_x
+        pus_M_ta_t_2 = pus_Q_xx*pus_q_y - pus_Q_xy*pus_q_x
+        pus_M_ta_t_3 = pus_Q_yy*pus_q_z - pus_Q_yz*pus_q_y
+        pus_M_ta_t_4 = pus_Q_yz*pus_q_x
+        pus_M_ta_t_5 = pus_Q_xy*pus_q_z - pus_M_ta_t_4
+        pus_M_ta_t_6 = pus_Q_yy*pus_q_x - pus_Q_xy*pus_q_y
+        pus_M_ta_t_7 = pus_Q_t_13*pus_q_y + pus_Q_yz*pus_q_z
+        pus_M_ta_t_8 = pus_Q_t_13*pus_q_x + pus_Q_xz*pus_q_z
+        pus_M_ta_t_9 = pus_M_ta_t_4 - pus_Q_xz*pus_q_y
         # (M_aa) rotational block of M
-        pus_M_aa_t = pus_M_ta_t_10*pus_q_y - pus_M_ta_t_6*pus_q_z
-        pus_M_aa_t_2 = pus_M_ta_t_11*pus_q_y - pus_M_ta_t_8*pus_q_z
-        pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_y - pus_M_ta_t_9*pus_q_z
-        pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_z - pus_M_ta_t_11*pus_q_x
-        pus_M_aa_t_5 = pus_M_ta_t_5*pus_q_z - pus_M_ta_t_12*pus_q_x
-        pus_M_aa_t_6 = pus_M_ta_t_9*pus_q_x - pus_M_ta_t_5*pus_q_y
+        pus_M_aa_t = pus_M_ta_t_3*pus_q_z - pus_M_ta_t_7*pus_q_y
+        pus_M_aa_t_2 = pus_M_ta_t_8*pus_q_y - pus_M_ta_t_5*pus_q_z
+        pus_M_aa_t_3 = pus_M_ta_t_9*pus_q_y - pus_M_ta_t_6*pus_q_z
+        pus_M_aa_t_4 = pus_M_ta_t*pus_q_z - pus_M_ta_t_8*pus_q_x
+        pus_M_aa_t_5 = pus_M_ta_t_2*pus_q_z + pus_M_ta_t_9*pus_q_x
+        pus_M_aa_t_6 = pus_M_ta_t_2*pus_q_y + pus_M_ta_t_6*pus_q_x
         ok = (
         ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
@@ -2697,41 +2692,41 @@ def _run_M(m, X):
         M_tt_xz += pus_Q_xz
         M_tt_pus_yy += pus_Q_yy
         M_tt_yz += pus_Q_yz
-        M_tt_pus_zz += pus_Q_zz
+        M_tt_t += pus_Q_t_13
         # (M_ta) coupling block of M
-        M_ta_xx += pus_M_ta_t_3
-        M_ta_pus_xy += pus_M_ta_t_4
-        M_ta_pus_xz += pus_M_ta_t_5
-        M_ta_pus_yx += pus_M_ta_t_6
-        M_ta_yy += pus_M_ta_t_8
-        M_ta_pus_yz += pus_M_ta_t_9
-        M_ta_pus_zx += pus_M_ta_t_10
-        M_ta_pus_zy += pus_M_ta_t_11
-        M_ta_zz += pus_M_ta_t_12
+        M_ta_yy += pus_M_ta_t_5
+        M_ta_zz += pus_M_ta_t_9
+        M_ta_pus_xy += pus_M_ta_t
+        M_ta_t += pus_M_ta_t_2
+        M_ta_t_2 += pus_M_ta_t_3
+        M_ta_pus_yz += pus_M_ta_t_6
+        M_ta_t_3 += pus_M_ta_t_7
+        M_ta_pus_zy += pus_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_pus_xx += pus_M_aa_t
         M_aa_pus_xy += pus_M_aa_t_2
         M_aa_pus_xz += pus_M_aa_t_3
         M_aa_pus_yy += pus_M_aa_t_4
-        M_aa_pus_yz += pus_M_aa_t_5
+        M_aa_t += pus_M_aa_t_5
         M_aa_pus_zz += pus_M_aa_t_6
     # (M_tt) translational block of M
     M_tt_xx = M_tt_pus_xx + m_star
     M_tt_yy = M_tt_pus_yy + m_star
-    M_tt_zz = M_tt_pus_zz + m_star
+    M_tt_zz = m_star - M_tt_t
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_pus_xy + h_star_z
-    M_ta_xz = M_ta_pus_xz - h_star_y
-    M_ta_yx = M_ta_pus_yx - h_star_z
+    M_ta_xz = -M_ta_t - h_star_y
+    M_ta_yx = -M_ta_t_2 - h_star_z
     M_ta_yz = M_ta_pus_yz + h_star_x
-    M_ta_zx = M_ta_pus_zx + h_star_y
+    M_ta_zx = h_star_y - M_ta_t_3
     M_ta_zy = M_ta_pus_zy - h_star_x
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_pus_xx
     M_aa_xy = J_star_xy + M_aa_pus_xy
     M_aa_xz = J_star_xz + M_aa_pus_xz
     M_aa_yy = J_star_yy + M_aa_pus_yy
-    M_aa_yz = J_star_yz + M_aa_pus_yz
+    M_aa_yz = J_star_yz - M_aa_t
     M_aa_zz = J_star_zz + M_aa_pus_zz
     # (M_tt) translational block of M
     out_M[0] = M_tt_xx
@@ -2775,14 +2770,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1128 mul, 840 add, 18 div, 12 sqrt, 0 trig
+# Z: 1125 mul, 840 add, 18 div, 12 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2847,13 +2842,12 @@ def _run_Z(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3272,7 +3266,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1215 mul, 915 add, 18 div, 12 sqrt, 0 trig
+# required: 1206 mul, 909 add, 18 div, 12 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3370,9 +3364,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
@@ -3396,27 +3387,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_pus_x, R_a_pus_y, R_a_pus_z = [0.0] * 6
     for leg, k in legs[0]:
         (

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -892,6 +903,8 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
     const real J_star_t_12 = R(0.5)*J_star_t_11;
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
+    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
@@ -910,6 +923,7 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_12);
     KEEP(J_star_t_14);
+    KEEP(J_star_t_15);
     KEEP(Z_p_t);
     KEEP(Z_p_t_2);
     KEEP(Z_p_t_3);
@@ -1477,8 +1491,8 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
-        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_yy, J_star_zz,
+        J_star_xy, J_star_xz, J_star_yz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
         Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
 
@@ -1548,16 +1562,15 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_zz = m->J_star_t_15 - v->J_star_xx - v->J_star_yy;
     v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
     v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
-    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
-    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
 }
 
 INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
@@ -1589,7 +1602,7 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
     const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
-    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
     v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
         Z_q_t_2*omega_z;
     v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
@@ -1600,20 +1613,20 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
 
 typedef struct {
     real rus_q_x, rus_q_y, rus_q_z, rus_J_3_t_10, rus_J_3_t_11, rus_J_3_t_15, rus_J_3_t_17,
-        rus_e_1_in_axes3_x, rus_c_1, rus_s_1, rus_c_2, rus_s_2_t, rus_r_1_t, rus_v_1_t_2, rus_v_1_t_3,
-        rus_v_1_in_axes3_z, axis_z_rus_axes3_x, axis_z_rus_axes3_y, axis_z_rus_axes3_z,
+        rus_e_1_in_axes3_x, rus_c_1, rus_s_1, rus_c_2, rus_s_2_t, rus_r_1_in_axes3_z,
+        rus_d_2_in_axes3_x, rus_r_1_in_axes3_y, rus_v_1_t, rus_v_1_t_2, rus_v_1_in_axes3_z,
+        rus_v_2_in_axes3_z, axis_z_rus_axes3_x, axis_z_rus_axes3_y, axis_z_rus_axes3_z,
         axis_y_rus_axes3_x, axis_y_rus_axes3_y, axis_y_rus_axes3_z, axis_x_rus_axes3_x,
-        axis_x_rus_axes3_y, axis_x_rus_axes3_z, inv_rus_v_1_t_2, rus_w_1_t_7, rus_w_1_t_8,
-        rus_w_1_t_9, rus_w_2_in_axes3_z, rus_bias_t, rus_d_2_in_axes3_z, rus_g_in_axes3_x,
-        rus_g_in_axes3_y, rus_g_in_axes3_z, rus_d_Gamma_2_t_2, rus_g_in_axes1_x, rus_g_in_axes1_y,
-        rus_mu_1_t_3, rus_H_a_1_x, rus_H_a_1_y, rus_H_a_1_z, rus_S_dot_t, rus_S_dot_t_2,
-        rus_S_dot_t_3, rus_qd_1_t, rus_qd_2, rus_qd_3, rus_W_3_in_axes3_yz, rus_W_3_in_axes3_xz,
-        rus_W_3_in_axes3_xy, rus_bias_in_axes3_x, rus_bias_in_axes3_y, rus_bias_in_axes3_z,
-        rus_mu_3_t_4, rus_mu_3_t_5, rus_mu_3_t_6, rus_c_t, rus_c_t_2, rus_c_t_3,
-        rus_S_ddot_in_axes3_x, rus_S_ddot_in_axes3_y, rus_S_ddot_in_axes3_z, rus_qdd_1_t, rus_qdd_2,
-        rus_qdd_3_t, rus_Q_xx, rus_Q_xy, rus_Q_xz, rus_Q_yy, rus_Q_yz, rus_Q_zz, rus_M_ta_t_3,
-        rus_M_ta_t_4, rus_M_ta_t_5, rus_M_ta_t_6, rus_M_ta_t_8, rus_M_ta_t_9, rus_M_ta_t_10,
-        rus_M_ta_t_11, rus_M_ta_t_12, rus_M_aa_t, rus_M_aa_t_2, rus_M_aa_t_3, rus_M_aa_t_4,
+        axis_x_rus_axes3_y, axis_x_rus_axes3_z, inv_rus_v_1_t, rus_w_1_t_7, rus_w_1_t_8, rus_w_1_t_9,
+        rus_w_2_in_axes3_z, rus_g_in_axes3_x, rus_g_in_axes3_y, rus_g_in_axes3_z, rus_d_Gamma_2_t_2,
+        rus_g_in_axes1_x, rus_g_in_axes1_y, rus_mu_1_t_3, rus_H_a_1_x, rus_H_a_1_y, rus_H_a_1_z,
+        rus_S_dot_t, rus_S_dot_t_2, rus_S_dot_t_3, rus_qd_1_t, rus_qd_2, rus_qd_3,
+        rus_W_3_in_axes3_yz, rus_W_3_in_axes3_xz, rus_W_3_in_axes3_xy, rus_bias_in_axes3_x,
+        rus_bias_in_axes3_y, rus_bias_in_axes3_z, rus_mu_3_t_4, rus_mu_3_t_5, rus_mu_3_t_6, rus_c_t,
+        rus_c_t_2, rus_c_t_3, rus_S_ddot_in_axes3_x, rus_S_ddot_in_axes3_y, rus_S_ddot_in_axes3_z,
+        rus_qdd_1_t, rus_qdd_2, rus_qdd_3_t, rus_Q_xx, rus_Q_yy, rus_Q_t_13, rus_Q_xy, rus_Q_xz,
+        rus_Q_yz, rus_M_ta_t, rus_M_ta_t_2, rus_M_ta_t_3, rus_M_ta_t_5, rus_M_ta_t_6, rus_M_ta_t_7,
+        rus_M_ta_t_8, rus_M_ta_t_9, rus_M_aa_t, rus_M_aa_t_2, rus_M_aa_t_3, rus_M_aa_t_4,
         rus_M_aa_t_5, rus_M_aa_t_6, rus_U_x, rus_U_y, rus_U_z, rus_Z_a_t, rus_Z_a_t_2, rus_Z_a_t_3,
         rus_acc_3_in_axes3_x, rus_acc_3_in_axes3_y, rus_acc_3_in_axes3_z, rus_c_in_axes3_x,
         rus_c_in_axes3_y, rus_c_in_axes3_z;
@@ -1674,18 +1687,18 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
     v->rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16;
     /* (rus-r_1) from joint 1 to the connection point, along the links */
-    v->rus_r_1_t = v->rus_J_3_t_17*m->rus_platform_joint_offset_x[i];
-    const real rus_r_1_in_axes1_z = v->rus_e_1_in_axes3_x*m->rus_platform_joint_offset_x[i];
-    const real rus_r_1_t_2 = v->rus_r_1_t*v->rus_s_2_t;
-    const real rus_r_1_in_axes1_x = m->rus_joint2_offset_x[i] + v->rus_c_2*v->rus_r_1_t;
-    const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*v->rus_s_2_t - v->rus_c_2*rus_r_1_t_2;
+    const real rus_r_1_t = v->rus_c_2*m->rus_joint2_offset_x[i];
+    v->rus_r_1_in_axes3_z = m->rus_joint2_offset_x[i]*v->rus_s_2_t;
+    v->rus_d_2_in_axes3_x = v->rus_J_3_t_17*rus_r_1_t;
+    v->rus_r_1_in_axes3_y = v->rus_e_1_in_axes3_x*rus_r_1_t;
+    const real rus_r_1_in_axes3_x = m->rus_platform_joint_offset_x[i] + v->rus_d_2_in_axes3_x;
     /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-    const real rus_v_1_t = v->rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*v->rus_s_2_t;
-    v->rus_v_1_t_2 = v->rus_J_3_t_17*rus_r_1_in_axes3_z;
-    v->rus_v_1_t_3 = v->rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-    v->rus_v_1_in_axes3_z = v->rus_J_3_t_17*(v->rus_e_1_in_axes3_x*rus_r_1_in_axes1_z +
-        v->rus_J_3_t_17*rus_v_1_t) + v->rus_e_1_in_axes3_x*(v->rus_e_1_in_axes3_x*rus_v_1_t -
-        v->rus_J_3_t_17*rus_r_1_in_axes1_z);
+    v->rus_v_1_t = v->rus_J_3_t_17*v->rus_r_1_in_axes3_z;
+    v->rus_v_1_t_2 = v->rus_e_1_in_axes3_x*v->rus_r_1_in_axes3_z;
+    v->rus_v_1_in_axes3_z = v->rus_e_1_in_axes3_x*v->rus_r_1_in_axes3_y +
+        v->rus_J_3_t_17*rus_r_1_in_axes3_x;
+    /* (rus-v_2) velocity of the connection point per rate of joint 2 */
+    v->rus_v_2_in_axes3_z = v->rus_J_3_t_17*m->rus_platform_joint_offset_x[i];
     /* (rus-w_1) reciprocal vector 1 */
     const real rus_w_1_t = v->rus_c_1*v->rus_s_2_t - v->rus_c_2*v->rus_s_1;
     const real rus_w_1_t_2 = v->rus_c_1*v->rus_c_2 + v->rus_s_1*v->rus_s_2_t;
@@ -1711,15 +1724,12 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_z;
     v->axis_x_rus_axes3_z = v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_y -
         v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_x;
-    v->inv_rus_v_1_t_2 = 1/v->rus_v_1_t_2;
-    v->rus_w_1_t_7 = v->axis_x_rus_axes3_x*v->inv_rus_v_1_t_2;
-    v->rus_w_1_t_8 = v->axis_x_rus_axes3_y*v->inv_rus_v_1_t_2;
-    v->rus_w_1_t_9 = v->axis_x_rus_axes3_z*v->inv_rus_v_1_t_2;
+    v->inv_rus_v_1_t = 1/v->rus_v_1_t;
+    v->rus_w_1_t_7 = v->axis_x_rus_axes3_x*v->inv_rus_v_1_t;
+    v->rus_w_1_t_8 = v->axis_x_rus_axes3_y*v->inv_rus_v_1_t;
+    v->rus_w_1_t_9 = v->axis_x_rus_axes3_z*v->inv_rus_v_1_t;
     /* (rus-w_2) reciprocal vector 2 */
-    v->rus_w_2_in_axes3_z = 1/v->rus_r_1_t;
-    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    v->rus_bias_t = v->rus_c_2*m->rus_joint2_offset_x[i];
-    v->rus_d_2_in_axes3_z = m->rus_joint2_offset_x[i]*v->rus_s_2_t;
+    v->rus_w_2_in_axes3_z = 1/v->rus_v_2_in_axes3_z;
     /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
     v->rus_g_in_axes3_x = v->axis_x_rus_axes3_x*m->gravity_x +
         v->axis_x_rus_axes3_y*m->gravity_y + v->axis_x_rus_axes3_z*m->gravity_z;
@@ -1759,7 +1769,7 @@ INLINE void stage_rus_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real t_dot_z = V[2*w + j];
     const real rus_S_dot_z = t_dot_z + v->rus_S_dot_t_3;
     /* (rus-qd_1) rate of joint 1 */
-    v->rus_qd_1_t = v->inv_rus_v_1_t_2*(v->axis_x_rus_axes3_x*rus_S_dot_x +
+    v->rus_qd_1_t = v->inv_rus_v_1_t*(v->axis_x_rus_axes3_x*rus_S_dot_x +
         v->axis_x_rus_axes3_y*rus_S_dot_y + v->axis_x_rus_axes3_z*rus_S_dot_z);
     /* (rus-qd_2) rate of joint 2 */
     v->rus_qd_2 = v->rus_w_2_in_axes3_z*(v->axis_z_rus_axes3_x*rus_S_dot_x +
@@ -1768,7 +1778,7 @@ INLINE void stage_rus_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rus-qd_3) rate of joint 3 */
     const real rus_qd_3_t = v->axis_y_rus_axes3_x*rus_S_dot_x +
         v->axis_y_rus_axes3_y*rus_S_dot_y + v->axis_y_rus_axes3_z*rus_S_dot_z -
-        v->rus_qd_1_t*v->rus_v_1_t_3;
+        v->rus_qd_1_t*v->rus_v_1_t_2;
     v->rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
     /* (rus-omega_1) angular velocity of link 1 */
     const real rus_omega_1_in_axes3_x = -v->rus_e_1_in_axes3_x*v->rus_qd_1_t;
@@ -1782,16 +1792,16 @@ INLINE void stage_rus_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*v->rus_qd_3;
     v->rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
     /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    const real rus_bias_t_2 = v->rus_J_3_t_17*v->rus_bias_t*rus_omega_1_in_axes3_y -
-        v->rus_bias_t*v->rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
-    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    v->rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - v->rus_qd_3*rus_qd_3_t -
-        rus_bias_t_2*rus_omega_1_in_axes3_y;
-    v->rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
-        rus_bias_t_3*rus_omega_2_in_axes3_x;
+    const real rus_bias_t = v->rus_d_2_in_axes3_x*rus_omega_1_in_axes3_y -
+        rus_omega_1_in_axes3_x*v->rus_r_1_in_axes3_y;
+    const real rus_bias_t_2 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
+    v->rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_2_in_axes3_y -
+        rus_bias_t*rus_omega_1_in_axes3_y - v->rus_qd_3*rus_qd_3_t;
+    v->rus_bias_in_axes3_y = rus_bias_t*rus_omega_1_in_axes3_x -
+        rus_bias_t_2*rus_omega_2_in_axes3_x;
     v->rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
-        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
+        rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x*v->rus_r_1_in_axes3_z -
+        rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y*v->rus_r_1_in_axes3_z +
         v->rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
     /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
@@ -1840,12 +1850,12 @@ INLINE void stage_rus_A_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     const real rus_rel_in_axes3_y = v->rus_S_ddot_in_axes3_y - v->rus_bias_in_axes3_y;
     const real rus_rel_in_axes3_z = v->rus_S_ddot_in_axes3_z - v->rus_bias_in_axes3_z;
     /* (rus-qdd_1) acceleration of joint 1 */
-    v->rus_qdd_1_t = v->inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+    v->rus_qdd_1_t = v->inv_rus_v_1_t*rus_rel_in_axes3_x;
     /* (rus-qdd_2) acceleration of joint 2 */
     v->rus_qdd_2 = v->rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
         v->rus_qdd_1_t*v->rus_v_1_in_axes3_z);
     /* (rus-qdd_3) acceleration of joint 3 */
-    v->rus_qdd_3_t = m->rus_w_3_in_axes3_y[i]*(v->rus_qdd_1_t*v->rus_v_1_t_3 -
+    v->rus_qdd_3_t = m->rus_w_3_in_axes3_y[i]*(v->rus_qdd_1_t*v->rus_v_1_t_2 -
         rus_rel_in_axes3_y);
 }
 
@@ -1861,16 +1871,16 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
         m->rus_J_3_in_spec3_xz[i]*v->rus_J_3_t_17);
     /* (rus-w_2) reciprocal vector 2 */
     const real rus_w_2_in_axes3_x =
-        v->inv_rus_v_1_t_2*v->rus_v_1_in_axes3_z*v->rus_w_2_in_axes3_z;
+        v->inv_rus_v_1_t*v->rus_v_1_in_axes3_z*v->rus_w_2_in_axes3_z;
     /* (rus-w_3) reciprocal vector 3 */
-    const real rus_w_3_t = v->inv_rus_v_1_t_2*v->rus_v_1_t_3*m->rus_w_3_in_axes3_y[i];
+    const real rus_w_3_t = v->inv_rus_v_1_t*v->rus_v_1_t_2*m->rus_w_3_in_axes3_y[i];
     /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
     const real rus_d_alpha_3_t = v->rus_J_3_t_17*v->rus_w_2_in_axes3_z;
     /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
     const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*v->rus_w_2_in_axes3_z;
     const real rus_d_Gamma_3_in_axes3_x = m->rus_h_3_in_spec3_z[i] -
-        v->inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz + m->rus_d_Gamma_3_t[i]*v->rus_v_1_t_3 -
+        v->inv_rus_v_1_t*(rus_J_3_in_axes2_yz + m->rus_d_Gamma_3_t[i]*v->rus_v_1_t_2 -
         rus_d_Gamma_3_in_axes3_z*v->rus_v_1_in_axes3_z);
     /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
@@ -1878,15 +1888,15 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
     const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes1_zz*v->rus_w_2_in_axes3_z;
     const real rus_d_Gamma_2_t_4 = -rus_J_3_in_axes2_yz*m->rus_w_3_in_axes3_y[i];
     const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*v->rus_v_1_in_axes3_z;
-    const real rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*v->rus_v_1_t_3;
-    const real rus_d_Gamma_2_in_axes3_x = v->inv_rus_v_1_t_2*(rus_d_Gamma_2_t_6 -
+    const real rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*v->rus_v_1_t_2;
+    const real rus_d_Gamma_2_in_axes3_x = v->inv_rus_v_1_t*(rus_d_Gamma_2_t_6 -
         rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5) - rus_d_Gamma_2_t;
     const real rus_d_Gamma_2_in_axes3_y = -v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
         rus_d_Gamma_2_t_4;
     const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_3 - v->rus_d_Gamma_2_t_2;
     /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rus_d_Gamma_1_in_axes3_x = v->inv_rus_v_1_t_2*(rus_d_Gamma_2_t_6 -
+    const real rus_d_Gamma_1_in_axes3_x = v->inv_rus_v_1_t*(rus_d_Gamma_2_t_6 -
         m->rus_J_1_in_spec1_zz[i] - rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5) -
         rus_d_Gamma_2_t;
     /* (rus-d_G) coefficient of the acceleration in: force at the connection point that balances the
@@ -1894,23 +1904,25 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
     const real rus_d_G_in_axes3_zy = rus_d_Gamma_2_in_axes3_y*v->rus_w_2_in_axes3_z;
     /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real rus_d_c_in_axes3_xx = v->inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x +
-        rus_d_Gamma_3_in_axes3_x*rus_w_3_t + m->rus_h_3_in_spec3_z[i]*rus_w_3_t -
+    const real rus_d_c_in_axes3_xx = rus_d_Gamma_3_in_axes3_x*rus_w_3_t +
+        m->rus_h_3_in_spec3_z[i]*rus_w_3_t + v->inv_rus_v_1_t*rus_d_Gamma_1_in_axes3_x -
         rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
-        m->rus_h_3_in_spec3_y[i]*(v->inv_rus_v_1_t_2*v->rus_J_3_t_17 -
+        m->rus_h_3_in_spec3_y[i]*(v->inv_rus_v_1_t*v->rus_J_3_t_17 -
         v->rus_J_3_t_17*rus_w_2_in_axes3_x);
-    const real rus_d_c_in_axes3_xy = v->inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
+    const real rus_d_c_in_axes3_xy = v->inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_y -
         m->rus_d_phi_3_in_axes3_xy[i] + m->rus_d_Gamma_3_in_axes3_y[i]*rus_w_3_t -
         rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x;
     const real rus_d_c_in_axes3_xz = rus_d_alpha_3_t*m->rus_h_3_in_spec3_y[i] +
-        v->inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_Gamma_3_in_axes3_z*rus_w_3_t -
+        v->inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_z + rus_d_Gamma_3_in_axes3_z*rus_w_3_t -
         rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x;
+    const real rus_d_c_in_axes3_zz =
+        v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i]*v->rus_w_2_in_axes3_z -
+        rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
+        rus_d_Gamma_2_in_axes3_z*v->rus_w_2_in_axes3_z;
     /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rus_Q_t = rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
     const real rus_Q_t_2 = R(0.5)*rus_Q_t;
-    const real rus_Q_t_3 = rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
-        v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i]*v->rus_w_2_in_axes3_z +
-        rus_d_Gamma_2_in_axes3_z*v->rus_w_2_in_axes3_z + rus_d_c_in_axes3_xx;
+    const real rus_Q_t_3 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_zz;
     const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
     const real rus_Q_t_5 = v->axis_z_rus_axes3_x*rus_d_G_in_axes3_zy -
         v->axis_x_rus_axes3_x*rus_d_c_in_axes3_xy + v->axis_y_rus_axes3_x*rus_Q_t_2;
@@ -1926,37 +1938,33 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
         v->axis_x_rus_axes3_z*rus_d_c_in_axes3_xz;
     const real rus_Q_t_11 = v->axis_y_rus_axes3_x*rus_Q_t_5 + v->axis_z_rus_axes3_x*rus_Q_t_8;
     v->rus_Q_xx = 2*rus_Q_t_11 - rus_d_c_in_axes3_xx;
+    const real rus_Q_t_12 = v->axis_y_rus_axes3_y*rus_Q_t_6 + v->axis_z_rus_axes3_y*rus_Q_t_9;
+    v->rus_Q_yy = 2*rus_Q_t_12 - rus_d_c_in_axes3_xx;
+    v->rus_Q_t_13 = m->rus_d_c_in_axes3_yy[i] + rus_d_c_in_axes3_zz + rus_d_c_in_axes3_xx +
+        v->rus_Q_xx + v->rus_Q_yy;
     v->rus_Q_xy = v->axis_y_rus_axes3_x*rus_Q_t_6 + v->axis_y_rus_axes3_y*rus_Q_t_5 +
         v->axis_z_rus_axes3_x*rus_Q_t_9 + v->axis_z_rus_axes3_y*rus_Q_t_8;
     v->rus_Q_xz = v->axis_y_rus_axes3_x*rus_Q_t_7 + v->axis_y_rus_axes3_z*rus_Q_t_5 +
         v->axis_z_rus_axes3_x*rus_Q_t_10 + v->axis_z_rus_axes3_z*rus_Q_t_8;
-    const real rus_Q_t_12 = v->axis_y_rus_axes3_y*rus_Q_t_6 + v->axis_z_rus_axes3_y*rus_Q_t_9;
-    v->rus_Q_yy = 2*rus_Q_t_12 - rus_d_c_in_axes3_xx;
     v->rus_Q_yz = v->axis_y_rus_axes3_y*rus_Q_t_7 + v->axis_y_rus_axes3_z*rus_Q_t_6 +
         v->axis_z_rus_axes3_y*rus_Q_t_10 + v->axis_z_rus_axes3_z*rus_Q_t_9;
-    const real rus_Q_t_13 = v->axis_y_rus_axes3_z*rus_Q_t_7 +
-        v->axis_z_rus_axes3_z*rus_Q_t_10;
-    v->rus_Q_zz = 2*rus_Q_t_13 - rus_d_c_in_axes3_xx;
     /* (M_ta) coupling block of M */
-    const real rus_M_ta_t = v->rus_Q_xy*v->rus_q_z;
-    const real rus_M_ta_t_2 = v->rus_Q_xz*v->rus_q_y;
-    v->rus_M_ta_t_3 = rus_M_ta_t_2 - rus_M_ta_t;
-    v->rus_M_ta_t_4 = v->rus_Q_xx*v->rus_q_z - v->rus_Q_xz*v->rus_q_x;
-    v->rus_M_ta_t_5 = v->rus_Q_xy*v->rus_q_x - v->rus_Q_xx*v->rus_q_y;
-    v->rus_M_ta_t_6 = v->rus_Q_yz*v->rus_q_y - v->rus_Q_yy*v->rus_q_z;
-    const real rus_M_ta_t_7 = v->rus_Q_yz*v->rus_q_x;
-    v->rus_M_ta_t_8 = rus_M_ta_t - rus_M_ta_t_7;
-    v->rus_M_ta_t_9 = v->rus_Q_yy*v->rus_q_x - v->rus_Q_xy*v->rus_q_y;
-    v->rus_M_ta_t_10 = v->rus_Q_zz*v->rus_q_y - v->rus_Q_yz*v->rus_q_z;
-    v->rus_M_ta_t_11 = v->rus_Q_xz*v->rus_q_z - v->rus_Q_zz*v->rus_q_x;
-    v->rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2;
+    v->rus_M_ta_t = v->rus_Q_xx*v->rus_q_z - v->rus_Q_xz*v->rus_q_x;
+    v->rus_M_ta_t_2 = v->rus_Q_xx*v->rus_q_y - v->rus_Q_xy*v->rus_q_x;
+    v->rus_M_ta_t_3 = v->rus_Q_yy*v->rus_q_z - v->rus_Q_yz*v->rus_q_y;
+    const real rus_M_ta_t_4 = v->rus_Q_yz*v->rus_q_x;
+    v->rus_M_ta_t_5 = v->rus_Q_xy*v->rus_q_z - rus_M_ta_t_4;
+    v->rus_M_ta_t_6 = v->rus_Q_yy*v->rus_q_x - v->rus_Q_xy*v->rus_q_y;
+    v->rus_M_ta_t_7 = v->rus_Q_yz*v->rus_q_z + v->rus_Q_t_13*v->rus_q_y;
+    v->rus_M_ta_t_8 = v->rus_Q_xz*v->rus_q_z + v->rus_Q_t_13*v->rus_q_x;
+    v->rus_M_ta_t_9 = rus_M_ta_t_4 - v->rus_Q_xz*v->rus_q_y;
     /* (M_aa) rotational block of M */
-    v->rus_M_aa_t = v->rus_M_ta_t_10*v->rus_q_y - v->rus_M_ta_t_6*v->rus_q_z;
-    v->rus_M_aa_t_2 = v->rus_M_ta_t_11*v->rus_q_y - v->rus_M_ta_t_8*v->rus_q_z;
-    v->rus_M_aa_t_3 = v->rus_M_ta_t_12*v->rus_q_y - v->rus_M_ta_t_9*v->rus_q_z;
-    v->rus_M_aa_t_4 = v->rus_M_ta_t_4*v->rus_q_z - v->rus_M_ta_t_11*v->rus_q_x;
-    v->rus_M_aa_t_5 = v->rus_M_ta_t_5*v->rus_q_z - v->rus_M_ta_t_12*v->rus_q_x;
-    v->rus_M_aa_t_6 = v->rus_M_ta_t_9*v->rus_q_x - v->rus_M_ta_t_5*v->rus_q_y;
+    v->rus_M_aa_t = v->rus_M_ta_t_3*v->rus_q_z - v->rus_M_ta_t_7*v->rus_q_y;
+    v->rus_M_aa_t_2 = v->rus_M_ta_t_8*v->rus_q_y - v->rus_M_ta_t_5*v->rus_q_z;
+    v->rus_M_aa_t_3 = v->rus_M_ta_t_9*v->rus_q_y - v->rus_M_ta_t_6*v->rus_q_z;
+    v->rus_M_aa_t_4 = v->rus_M_ta_t*v->rus_q_z - v->rus_M_ta_t_8*v->rus_q_x;
+    v->rus_M_aa_t_5 = v->rus_M_ta_t_2*v->rus_q_z + v->rus_M_ta_t_9*v->rus_q_x;
+    v->rus_M_aa_t_6 = v->rus_M_ta_t_2*v->rus_q_y + v->rus_M_ta_t_6*v->rus_q_x;
 }
 
 INLINE void stage_rus_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1981,9 +1989,9 @@ INLINE void stage_rus_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - v->rus_bias_in_axes3_y;
     const real rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - v->rus_bias_in_axes3_z;
     /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rus_qdd_1_o_t = v->inv_rus_v_1_t_2*rus_rel_o_in_axes3_x;
+    const real rus_qdd_1_o_t = v->inv_rus_v_1_t*rus_rel_o_in_axes3_x;
     /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
-    const real rus_qdd_3_o = -m->rus_w_3_in_axes3_y[i]*(rus_qdd_1_o_t*v->rus_v_1_t_3 -
+    const real rus_qdd_3_o = -m->rus_w_3_in_axes3_y[i]*(rus_qdd_1_o_t*v->rus_v_1_t_2 -
         rus_rel_o_in_axes3_y);
     /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real rus_alpha_2_o_in_axes2_z = v->rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
@@ -2040,7 +2048,7 @@ INLINE void stage_rus_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rus_c_o_in_axes3_x = v->rus_c_t +
         rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
         rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
-        v->inv_rus_v_1_t_2*(rus_G_o_in_axes3_y*v->rus_v_1_t_3 + rus_N_1_o_in_axes1_z -
+        v->inv_rus_v_1_t*(rus_G_o_in_axes3_y*v->rus_v_1_t_2 + rus_N_1_o_in_axes1_z -
         rus_G_o_in_axes3_z*v->rus_v_1_in_axes3_z);
     const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
         v->rus_c_t_2 - rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
@@ -2113,7 +2121,7 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
        point */
     v->rus_c_in_axes3_x = v->rus_c_t + rus_B_3_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
         rus_alpha_2_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
-        v->inv_rus_v_1_t_2*(rus_G_in_axes3_y*v->rus_v_1_t_3 + rus_N_1_in_axes1_z -
+        v->inv_rus_v_1_t*(rus_G_in_axes3_y*v->rus_v_1_t_2 + rus_N_1_in_axes1_z -
         rus_G_in_axes3_z*v->rus_v_1_in_axes3_z);
     v->rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*m->rus_h_3_in_spec3_y[i] - v->rus_c_t_2 -
         rus_B_3_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_in_axes3_y;
@@ -2121,11 +2129,8 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
         rus_B_3_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_in_axes3_z;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2141,14 +2146,80 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[19*w + k] = v->h_star_y;
     s[20*w + k] = v->h_star_z;
     s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
+    s[22*w + k] = v->J_star_yy;
+    s[23*w + k] = v->J_star_zz;
+    s[24*w + k] = v->J_star_xy;
+    s[25*w + k] = v->J_star_xz;
+    s[26*w + k] = v->J_star_yz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->unreachable[k] += o[6*count + at];
+    t->singular[k] += o[7*count + at];
+    t->total[k] += o[8*count + at];
+}
+
+INLINE void any_place_rus_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -2175,32 +2246,31 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[2*count + k], add, v.rus_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.rus_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.rus_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rus_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rus_Q_t_13);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.rus_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.rus_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.rus_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.rus_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.rus_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.rus_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.rus_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rus_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.rus_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.rus_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v.rus_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, v.rus_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.rus_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.rus_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.rus_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.rus_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.rus_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.rus_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.rus_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.rus_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.rus_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.rus_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.rus_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.rus_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.rus_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.rus_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.rus_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.rus_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.rus_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.rus_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.rus_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.rus_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[20*count + k], add, v.rus_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[21*count + k], add, v.rus_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[22*count + k], add, v.rus_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.rus_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.rus_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.rus_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[23*count + k], add, v.rus_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[24*count + k], add, v.rus_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[25*count + k], add, v.rus_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (rus-w_1) reciprocal vector 1 */
     o[0*count + k] = -v.rus_w_1_t_7;
     o[1*count + k] = -v.rus_w_1_t_8;
@@ -2213,24 +2283,9 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
         (v.rus_H_a_1_y + v.rus_H_a_1_z));
     o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
-}
-
-INLINE void dynamics_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    H[(3*NU + i)*w + k] = o[3*count + at];
-    H[(4*NU + i)*w + k] = o[4*count + at];
-    H[(5*NU + i)*w + k] = o[5*count + at];
-    t->unreachable[k] += o[6*count + at];
-    t->singular[k] += o[7*count + at];
-    t->total[k] += o[8*count + at];
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
@@ -2242,60 +2297,63 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
     const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y_of_legs = sums[21*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
-    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_a_y_of_legs = sums[24*w + k];
     const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_a_z_of_legs = sums[25*w + k];
     const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
@@ -2312,7 +2370,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2321,7 +2378,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -2330,7 +2386,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2360,17 +2415,17 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] = {0}, sums[27] = {0};
-    real terms_rus[27*LEGS(LEGS_OF_rus)] = {0}, o_rus[9*LEGS(LEGS_OF_rus)] = {0};
+    real s[33] CLEARED, sums[26] CLEARED;
+    real terms_rus[26*LEGS(LEGS_OF_rus)] CLEARED, o_rus[9*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         dynamics_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, V, terms_rus, o_rus);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
-        dynamics_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
+        any_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < 26; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2380,20 +2435,20 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[27*LANES];
+    real s[33*LANES], sums[26*LANES];
     real o_rus[9*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 27*LANES);
+    clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rus(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rus);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
+            any_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2402,31 +2457,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2439,36 +2469,28 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[2*count + k], add, v.rus_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.rus_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.rus_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rus_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rus_Q_t_13);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.rus_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.rus_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.rus_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.rus_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.rus_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.rus_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.rus_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rus_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.rus_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.rus_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v.rus_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, v.rus_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.rus_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.rus_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.rus_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.rus_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.rus_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.rus_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.rus_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.rus_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.rus_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.rus_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.rus_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.rus_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.rus_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.rus_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.rus_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.rus_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.rus_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
-}
-
-INLINE void M_place_rus(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -2480,41 +2502,44 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2530,7 +2555,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2539,7 +2563,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -2548,7 +2571,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2569,17 +2591,17 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] = {0}, sums[21] = {0};
-    real terms_rus[21*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
+    real s[27] CLEARED, sums[20] CLEARED;
+    real terms_rus[20*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         M_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, terms_rus, o_rus);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
-        M_place_rus(0, i, LEGS(LEGS_OF_rus), o_rus, t);
+        any_place_rus_2(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
+    for (size_t n = 0; n < 20; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2588,19 +2610,19 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[21*LANES];
+    real s[27*LANES], sums[20*LANES];
     real o_rus[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 21*LANES);
+    clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rus(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rus);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rus(k, k, LANES, o_rus, t);
+            any_place_rus_2(k, k, LANES, o_rus, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2609,22 +2631,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_Z_dynamics(m, w, k, V, v);
@@ -2653,16 +2659,9 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[5*count + k], add, v.rus_Z_a_t_3);  /* Z_a_z_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
-}
-
-INLINE void Z_place_rus(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -2700,15 +2699,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_rus[6*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_rus[6*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         Z_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, V, terms_rus, o_rus);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
-        Z_place_rus(0, i, LEGS(LEGS_OF_rus), o_rus, t);
+        any_place_rus_2(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
@@ -2724,7 +2723,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_rus[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
@@ -2733,7 +2732,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rus(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rus);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rus(k, k, LANES, o_rus, t);
+            any_place_rus_2(k, k, LANES, o_rus, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2742,22 +2741,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2775,37 +2758,22 @@ INLINE void H_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
         (v.rus_H_a_1_y + v.rus_H_a_1_z));
     o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_1_t) >
         TOLERANCE*m->rus_size[i]);
     o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
-INLINE void H_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    H[(3*NU + i)*w + k] = o[3*count + at];
-    H[(4*NU + i)*w + k] = o[4*count + at];
-    H[(5*NU + i)*w + k] = o[5*count + at];
-    t->unreachable[k] += o[6*count + at];
-    t->singular[k] += o[7*count + at];
-    t->total[k] += o[8*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_rus[9*LEGS(LEGS_OF_rus)] = {0};
+    real s[18] CLEARED;
+    real o_rus[9*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         H_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, o_rus);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
-        H_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
+        any_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
     }
 }
 
@@ -2816,46 +2784,19 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_rus[9*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rus(m, LANES, i, k, k, LANES, s, X, o_rus);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
+            any_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -2866,9 +2807,6 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
-    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
-    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
         v->W_p_t_4*v->h_star_x;
@@ -2898,27 +2836,24 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
-    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+    const real mu_p_t_4 = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
-    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
+        mu_p_t_2*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
-    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
+        mu_p_t_3*omega_in_platform_x;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
-    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
-        v->R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
-        v->R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
-        v->R_zz*mu_p_in_platform_z;
+        m->J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
+        mu_p_t*omega_in_platform_y;
+    const real mu_p_x = a_t_z*v->h_star_y - a_t_y*v->h_star_z + v->R_xx*mu_p_t_4 +
+        v->R_xy*mu_p_t_5 + v->R_xz*mu_p_t_6;
+    const real mu_p_y = a_t_x*v->h_star_z - a_t_z*v->h_star_x + v->R_yx*mu_p_t_4 +
+        v->R_yy*mu_p_t_5 + v->R_yz*mu_p_t_6;
+    const real mu_p_z = a_t_y*v->h_star_x - a_t_x*v->h_star_y + v->R_zx*mu_p_t_4 +
+        v->R_zy*mu_p_t_5 + v->R_zz*mu_p_t_6;
     s[18*w + k] = f_p_x;
     s[19*w + k] = f_p_y;
     s[20*w + k] = f_p_z;
@@ -2966,9 +2901,8 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     o[5*count + k] = v.rus_H_a_1_z;
     o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
@@ -3020,12 +2954,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_rus[6*LEGS(LEGS_OF_rus)] = {0}, o_rus[8*LEGS(LEGS_OF_rus)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_rus[6*LEGS(LEGS_OF_rus)] CLEARED, o_rus[8*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
-        required_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, V, A, terms_rus, o_rus);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rus); i += BESIDE(LEGS_OF_rus)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rus); ++k) {
+            required_legs_rus(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rus), 0, s, X, V, A, terms_rus,
+                o_rus);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         required_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
@@ -3044,7 +2981,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_rus[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3062,22 +2999,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -3115,10 +3036,10 @@ INLINE void inverse_kinematics_place_rus(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] = {0};
-    real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
+    real s[18] CLEARED;
+    real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         inverse_kinematics_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, o_rus);
     }
@@ -3134,7 +3055,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_rus[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3147,22 +3068,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
@@ -3178,9 +3083,8 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j
     o[5*count + k] = v.rus_qd_1_t + (v.rus_qd_2 + v.rus_qd_3);
     o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
@@ -3198,10 +3102,10 @@ INLINE void joint_rates_place_rus(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] = {0};
-    real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
+    real s[18] CLEARED;
+    real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         joint_rates_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, V, o_rus);
     }
@@ -3217,7 +3121,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_rus[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3230,33 +3134,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3273,9 +3150,8 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, 
     o[5*count + k] = v.rus_qdd_1_t + (v.rus_qdd_2 + v.rus_qdd_3_t);
     o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
@@ -3293,10 +3169,10 @@ INLINE void joint_accelerations_place_rus(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
+    real s[18] CLEARED;
+    real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         joint_accelerations_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, V, A, o_rus);
     }
@@ -3312,7 +3188,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_rus[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3325,33 +3201,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3386,9 +3235,8 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_
     o[5*count + k] = -v.rus_w_1_t_9;
     o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
@@ -3408,12 +3256,14 @@ INLINE void legs_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] = {0};
-    real o_rus[8*LEGS(LEGS_OF_rus)] = {0};
+    real s[18] CLEARED;
+    real o_rus[8*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
-        legs_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, V, A, o_rus);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rus); i += BESIDE(LEGS_OF_rus)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rus); ++k) {
+            legs_legs_rus(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rus), s, X, V, A, o_rus);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         legs_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, leg_force, actuator, t);
@@ -3421,22 +3271,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3474,12 +3308,6 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
     o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
-INLINE void potential_place_rus(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -3492,15 +3320,18 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] = {0}, sums[1] = {0};
-    real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
+    real s[19] CLEARED, sums[1] CLEARED;
+    real terms_rus[LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
-        potential_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, terms_rus, o_rus);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rus); i += BESIDE(LEGS_OF_rus)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rus); ++k) {
+            potential_legs_rus(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rus), 0, s, X, terms_rus,
+                o_rus);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
-        potential_place_rus(0, i, LEGS(LEGS_OF_rus), o_rus, t);
+        any_place_rus_2(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
@@ -3538,8 +3369,8 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
        degrees of freedom */
     const real rus_pivot_size = magnitude(v.rus_J_3_t_10);
     const real rus_pivot_size_2 = magnitude(v.rus_J_3_t_15);
-    const real rus_pivot_size_3 = magnitude(v.rus_r_1_t);
-    const real rus_pivot_size_4 = magnitude(v.rus_v_1_t_2);
+    const real rus_pivot_size_3 = magnitude(v.rus_v_2_in_axes3_z);
+    const real rus_pivot_size_4 = magnitude(v.rus_v_1_t);
     const real rus_least_pivots =
         lesser(lesser(lesser(root(m->inv_rus_rho2_1_t[i]*rus_pivot_size),
         m->inv_rus_size[i]*rus_pivot_size_3), m->inv_rus_size[i]*rus_pivot_size_4),
@@ -3567,9 +3398,8 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
         ((v.rus_H_a_1_y + v.rus_H_a_1_z) + (rus_least_pivots + v.rus_J_3_t_11));
     o[9*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
-        TOLERANCE*m->rus_size[i]);
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[8*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
@@ -3603,8 +3433,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[1] = {0};
-    real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[11*LEGS(LEGS_OF_rus)] = {0};
+    real s[18] CLEARED, sums[1] CLEARED;
+    real terms_rus[LEGS(LEGS_OF_rus)] CLEARED, o_rus[11*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
@@ -3975,7 +3805,7 @@ int hexapod_6rus_inverse_dynamics(const prepared *m, const real *X, const real *
     const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -4024,8 +3854,8 @@ int hexapod_6rus_forward_dynamics(const prepared *m, const real *X, const real *
     *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4094,7 +3924,7 @@ int hexapod_6rus_leg_reactions(const prepared *m, const real *X, const real *V, 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[18] CLEARED, forces[3*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4111,7 +3941,7 @@ int hexapod_6rus_leg_reactions(const prepared *m, const real *X, const real *V, 
 int hexapod_6rus_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4132,8 +3962,8 @@ int hexapod_6rus_condition(const prepared *m, const real *X, real *sigma_out, re
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4164,9 +3994,9 @@ int hexapod_6rus_manipulability(const prepared *m, const real *X, real *measure_
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4198,9 +4028,9 @@ int hexapod_6rus_singularity_distance(const prepared *m, const real *X, real *ac
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4232,8 +4062,8 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     *residual_out)
 {
     static const size_t places_residual[] = {0, 1, 2, 3, 4, 5};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[6] = {0}, subtract_1[NU] = {0}, residual[NU] =
-        {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[6] = {0}, subtract_1[NU] CLEARED, residual[NU]
+        CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4322,7 +4152,7 @@ int hexapod_6rus_dissipation(const prepared *m, const real *X, const real *V, re
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -4335,7 +4165,7 @@ int hexapod_6rus_dissipation(const prepared *m, const real *X, const real *V, re
 
 int hexapod_6rus_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4348,7 +4178,7 @@ int hexapod_6rus_joint_margins(const prepared *m, const real *X, real *margins_o
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4363,7 +4193,7 @@ int hexapod_6rus_joint_margins(const prepared *m, const real *X, real *margins_o
 
 int hexapod_6rus_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4377,7 +4207,7 @@ int hexapod_6rus_within_limits(const prepared *m, const real *X, real *within_ou
 
 int hexapod_6rus_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4388,7 +4218,7 @@ int hexapod_6rus_actuator_positions(const prepared *m, const real *X, real *q_ou
 
 int hexapod_6rus_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4400,7 +4230,7 @@ int hexapod_6rus_actuator_rates(const prepared *m, const real *X, const real *V,
 int hexapod_6rus_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4412,7 +4242,7 @@ int hexapod_6rus_actuator_accelerations(const prepared *m, const real *X, const 
 int hexapod_6rus_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4472,7 +4302,7 @@ int hexapod_6rus_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 
 int hexapod_6rus_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -4488,7 +4318,7 @@ int hexapod_6rus_retract(const real *X, const real *step, real *X_moved_out)
 
 int hexapod_6rus_difference(const real *X0, const real *X1, real *step_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -4504,7 +4334,8 @@ int hexapod_6rus_difference(const real *X0, const real *X1, real *step_out)
 
 int hexapod_6rus_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
+        {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -121,7 +121,7 @@ typedef struct {
             rus_size[8], rus_size_t_3[8], rus_w_3_in_axes3_y[8];
     hexapod_6rus_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } hexapod_6rus_model;
@@ -140,20 +140,20 @@ extern const char *const hexapod_6rus_ACTUATOR_NAMES[HEXAPOD_6RUS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *model);
 
-/* Inertia matrix M. 1287 mul, 897 add, 24 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1224 mul, 874 add, 24 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hexapod_6rus_M(const hexapod_6rus_model *model, const hexapod_6rus_real *X, hexapod_6rus_real
     *M);
 size_t hexapod_6rus_M_batch(const hexapod_6rus_model *model, size_t n, const hexapod_6rus_real *X,
     hexapod_6rus_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1482 mul, 1008 add, 24 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1413 mul, 984 add, 24 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hexapod_6rus_Z(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
     hexapod_6rus_real *V, hexapod_6rus_real *Z);
 size_t hexapod_6rus_Z_batch(const hexapod_6rus_model *model, size_t n, const hexapod_6rus_real *X,
     const hexapod_6rus_real *V, hexapod_6rus_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 570 mul, 294 add, 18 div, 12 sqrt, 0 trig. In:
+/* Force transformation H: actuators to task space. 546 mul, 282 add, 18 div, 12 sqrt, 0 trig. In:
    X (NQ). Out: H (NV x NU). */
 int hexapod_6rus_H(const hexapod_6rus_model *model, const hexapod_6rus_real *X, hexapod_6rus_real
     *H);
@@ -167,14 +167,14 @@ int hexapod_6rus_inverse_kinematics(const hexapod_6rus_model *model, const hexap
 size_t hexapod_6rus_inverse_kinematics_batch(const hexapod_6rus_model *model, size_t n, const
     hexapod_6rus_real *X, hexapod_6rus_real *q, int *status);
 
-/* Rates of all joints. 696 mul, 384 add, 24 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 654 mul, 360 add, 24 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int hexapod_6rus_joint_rates(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
     hexapod_6rus_real *V, hexapod_6rus_real *rates);
 size_t hexapod_6rus_joint_rates_batch(const hexapod_6rus_model *model, size_t n, const
     hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *rates, int *status);
 
-/* Accelerations of all joints. 978 mul, 561 add, 24 div, 12 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 912 mul, 537 add, 24 div, 12 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hexapod_6rus_joint_accelerations(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
     const hexapod_6rus_real *V, const hexapod_6rus_real *A, hexapod_6rus_real *accelerations);
@@ -182,7 +182,7 @@ size_t hexapod_6rus_joint_accelerations_batch(const hexapod_6rus_model *model, s
     hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A,
     hexapod_6rus_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 2202 mul, 1593 add, 24 div, 12 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 2115 mul, 1570 add, 24 div, 12 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexapod_6rus_dynamics(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
     hexapod_6rus_real *V, hexapod_6rus_real *M, hexapod_6rus_real *Z, hexapod_6rus_real *H);
@@ -190,7 +190,7 @@ size_t hexapod_6rus_dynamics_batch(const hexapod_6rus_model *model, size_t n, co
     hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *M, hexapod_6rus_real *Z,
     hexapod_6rus_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1569 mul, 1083 add, 24 div, 12 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1494 mul, 1053 add, 24 div, 12 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hexapod_6rus_inverse_dynamics(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
@@ -200,7 +200,7 @@ size_t hexapod_6rus_inverse_dynamics_batch(const hexapod_6rus_model *model, size
     hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A, const
     hexapod_6rus_real *wrench, hexapod_6rus_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2202 mul, 1593 add, 24 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 2115 mul, 1570 add, 24 div, 12
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexapod_6rus_forward_dynamics(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
@@ -221,7 +221,7 @@ size_t hexapod_6rus_complete_acceleration_batch(const hexapod_6rus_model *model,
     hexapod_6rus_real *wrench, hexapod_6rus_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 1428 mul, 957 add, 24 div, 12 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 1362 mul, 933 add, 24 div, 12 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 3). */
 int hexapod_6rus_leg_reactions(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
     hexapod_6rus_real *V, const hexapod_6rus_real *A, const hexapod_6rus_real *wrench,
@@ -241,7 +241,7 @@ size_t hexapod_6rus_energy_batch(const hexapod_6rus_model *model, size_t n, cons
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 613 mul, 348 add, 18 div, 25 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 595 mul, 336 add, 18 div, 25 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (6). */
 int hexapod_6rus_condition(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
     hexapod_6rus_real *sigma, hexapod_6rus_real *legs);
@@ -249,15 +249,15 @@ size_t hexapod_6rus_condition_batch(const hexapod_6rus_model *model, size_t n, c
     hexapod_6rus_real *X, hexapod_6rus_real *sigma, hexapod_6rus_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 613 mul, 348 add, 18 div, 25 sqrt, 0 trig; the singular
+   the least over the largest of them. 595 mul, 336 add, 18 div, 25 sqrt, 0 trig; the singular
    values apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int hexapod_6rus_manipulability(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
     hexapod_6rus_real *measure, hexapod_6rus_real *isotropy);
 size_t hexapod_6rus_manipulability_batch(const hexapod_6rus_model *model, size_t n, const
     hexapod_6rus_real *X, hexapod_6rus_real *measure, hexapod_6rus_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 613
-   mul, 348 add, 18 div, 25 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 595
+   mul, 336 add, 18 div, 25 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int hexapod_6rus_singularity_distance(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
     hexapod_6rus_real *actuators, hexapod_6rus_real *legs);
@@ -279,7 +279,7 @@ int hexapod_6rus_dissipation(const hexapod_6rus_model *model, const hexapod_6rus
 size_t hexapod_6rus_dissipation_batch(const hexapod_6rus_model *model, size_t n, const
     hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1287 mul, 897 add, 24 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 1224 mul, 874 add, 24 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hexapod_6rus_momentum(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
     hexapod_6rus_real *V, hexapod_6rus_real *momentum);
@@ -308,14 +308,14 @@ int hexapod_6rus_actuator_positions(const hexapod_6rus_model *model, const hexap
 size_t hexapod_6rus_actuator_positions_batch(const hexapod_6rus_model *model, size_t n, const
     hexapod_6rus_real *X, hexapod_6rus_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 696 mul, 384 add, 24 div, 12 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 654 mul, 360 add, 24 div, 12 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int hexapod_6rus_actuator_rates(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
     hexapod_6rus_real *V, hexapod_6rus_real *rates);
 size_t hexapod_6rus_actuator_rates_batch(const hexapod_6rus_model *model, size_t n, const
     hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 978 mul, 561 add, 24 div, 12 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 912 mul, 537 add, 24 div, 12 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hexapod_6rus_actuator_accelerations(const hexapod_6rus_model *model, const hexapod_6rus_real
     *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A, hexapod_6rus_real *accelerations);

@@ -702,6 +702,7 @@ def _prepare(p):
     J_star_t_12 = 0.5*J_star_t_11
     J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
+    J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
@@ -715,9 +716,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_rus,
         (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
@@ -738,8 +739,8 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_rus,
         (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
@@ -758,9 +759,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_rus,
         (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
@@ -1896,14 +1897,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 2202 mul, 1593 add, 24 div, 12 sqrt, 0 trig
+# dynamics: 2115 mul, 1570 add, 24 div, 12 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1970,13 +1971,12 @@ def _run_dynamics(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -1992,11 +1992,11 @@ def _run_dynamics(m, X, V):
     Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
-    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_rus_zz, M_ta_xx, M_ta_rus_xy,
-        M_ta_rus_xz, M_ta_rus_yx, M_ta_yy, M_ta_rus_yz, M_ta_rus_zx, M_ta_rus_zy, M_ta_zz,
-        M_aa_rus_xx, M_aa_rus_xy, M_aa_rus_xz, M_aa_rus_yy, M_aa_rus_yz, M_aa_rus_zz, Z_t_rus_x,
-        Z_t_rus_y, Z_t_rus_z, Z_a_rus_x, Z_a_rus_y, Z_a_rus_z,
-    ) = [0.0] * 27
+    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_t, M_ta_yy, M_ta_zz, M_ta_rus_xy,
+        M_ta_t, M_ta_t_2, M_ta_rus_yz, M_ta_t_3, M_ta_rus_zy, M_aa_rus_xx, M_aa_rus_xy,
+        M_aa_rus_xz, M_aa_rus_yy, M_aa_t, M_aa_rus_zz, Z_t_rus_x, Z_t_rus_y, Z_t_rus_z, Z_a_rus_x,
+        Z_a_rus_y, Z_a_rus_z,
+    ) = [0.0] * 26
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
@@ -2073,19 +2073,19 @@ def _run_dynamics(m, X, V):
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
-        rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -2117,18 +2117,18 @@ def _run_dynamics(m, X, V):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
-        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
-        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
-        rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
+        rus_w_2_in_axes3_x = inv_rus_v_1_t*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z
         # (rus-w_3) reciprocal vector 3
-        rus_w_3_t = inv_rus_v_1_t_2*rus_v_1_t_3*rus_w_3_in_axes3_y
+        rus_w_3_t = inv_rus_v_1_t*rus_v_1_t_2*rus_w_3_in_axes3_y
         # (rus-qd_1) rate of joint 1
         rus_qd_1_t = (
-        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
         )
         # (rus-qd_2) rate of joint 2
@@ -2139,7 +2139,7 @@ def _run_dynamics(m, X, V):
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_3
+            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_2
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
@@ -2167,33 +2167,30 @@ def _run_dynamics(m, X, V):
         axis_z_rus_axes3_x*rus_u_1_x + axis_z_rus_axes3_y*rus_u_1_y + axis_z_rus_axes3_z*rus_u_1_z
         )
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_bias_t_2 = (
-        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
-            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
+        rus_bias_t = (
+        rus_d_2_in_axes3_x*rus_omega_1_in_axes3_y - rus_omega_1_in_axes3_x*rus_r_1_in_axes3_y
         )
-        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_2 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
+        rus_bias_t_2*rus_omega_2_in_axes3_y - rus_bias_t*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
+        rus_bias_t*rus_omega_1_in_axes3_x - rus_bias_t_2*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
+            rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x*rus_r_1_in_axes3_z -
+            rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y*rus_r_1_in_axes3_z
         )
         # (rus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - rus_bias_in_axes3_x
         rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - rus_bias_in_axes3_y
         rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1_o) remainder of: acceleration of joint 1
-        rus_qdd_1_o_t = inv_rus_v_1_t_2*rus_rel_o_in_axes3_x
+        rus_qdd_1_o_t = inv_rus_v_1_t*rus_rel_o_in_axes3_x
         # (rus-qdd_3_o) remainder of: acceleration of joint 3
-        rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*rus_v_1_t_3 - rus_rel_o_in_axes3_y)
+        rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*rus_v_1_t_2 - rus_rel_o_in_axes3_y)
         # (rus-alpha_2_o) remainder of: angular acceleration of link 2
         rus_alpha_2_o_in_axes2_z = (
         rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z + rus_qdd_1_o_t*rus_v_1_in_axes3_z) -
@@ -2259,7 +2256,7 @@ def _run_dynamics(m, X, V):
         # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z
         rus_d_Gamma_3_in_axes3_x = (
-        rus_h_3_in_spec3_z - inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz + rus_d_Gamma_3_t*rus_v_1_t_3 -
+        rus_h_3_in_spec3_z - inv_rus_v_1_t*(rus_J_3_in_axes2_yz + rus_d_Gamma_3_t*rus_v_1_t_2 -
             rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z)
         )
         # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
@@ -2270,9 +2267,9 @@ def _run_dynamics(m, X, V):
         rus_d_Gamma_2_t_3 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
         rus_d_Gamma_2_t_4 = -rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
         rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_z
-        rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*rus_v_1_t_3
+        rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*rus_v_1_t_2
         rus_d_Gamma_2_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_3_in_axes1_zz) -
+        inv_rus_v_1_t*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_3_in_axes1_zz) -
             rus_d_Gamma_2_t
         )
         rus_d_Gamma_2_in_axes3_y = -rus_d_Gamma_2_t_4 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
@@ -2287,7 +2284,7 @@ def _run_dynamics(m, X, V):
         rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z
         # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rus_d_Gamma_1_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_1_in_spec1_zz -
+        inv_rus_v_1_t*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_1_in_spec1_zz -
             rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t
         )
         # (rus-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -2301,21 +2298,25 @@ def _run_dynamics(m, X, V):
         rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rus_d_c_in_axes3_xx = (
-        inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x + rus_d_Gamma_3_in_axes3_x*rus_w_3_t +
+        inv_rus_v_1_t*rus_d_Gamma_1_in_axes3_x + rus_d_Gamma_3_in_axes3_x*rus_w_3_t +
             rus_h_3_in_spec3_z*rus_w_3_t - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
-            rus_h_3_in_spec3_y*(inv_rus_v_1_t_2*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x)
+            rus_h_3_in_spec3_y*(inv_rus_v_1_t*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x)
         )
         rus_d_c_in_axes3_xy = (
-        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y + rus_d_Gamma_3_in_axes3_y*rus_w_3_t -
+        inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_y + rus_d_Gamma_3_in_axes3_y*rus_w_3_t -
             rus_d_phi_3_in_axes3_xy - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x
         )
         rus_d_c_in_axes3_xz = (
-        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_Gamma_3_in_axes3_z*rus_w_3_t +
+        inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_z + rus_d_Gamma_3_in_axes3_z*rus_w_3_t +
             rus_d_alpha_3_t*rus_h_3_in_spec3_y - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x
+        )
+        rus_d_c_in_axes3_zz = (
+        rus_e_1_in_axes3_x*rus_h_3_in_spec3_z*rus_w_2_in_axes3_z -
+            rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z - rus_d_alpha_3_t*rus_h_3_in_spec3_x
         )
         # (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rus_c_o_in_axes3_x = (
-        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z + rus_G_o_in_axes3_y*rus_v_1_t_3 -
+        rus_c_t + inv_rus_v_1_t*(rus_N_1_o_in_axes1_z + rus_G_o_in_axes3_y*rus_v_1_t_2 -
             rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y
         )
@@ -2330,11 +2331,7 @@ def _run_dynamics(m, X, V):
         # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
         rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
         rus_Q_t_2 = 0.5*rus_Q_t
-        rus_Q_t_3 = (
-        rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z +
-            rus_d_alpha_3_t*rus_h_3_in_spec3_x -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z*rus_w_2_in_axes3_z
-        )
+        rus_Q_t_3 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_zz
         rus_Q_t_4 = 0.5*rus_Q_t_3
         rus_Q_t_5 = (
         axis_y_rus_axes3_x*rus_Q_t_2 + axis_z_rus_axes3_x*rus_d_G_in_axes3_zy -
@@ -2353,6 +2350,11 @@ def _run_dynamics(m, X, V):
         rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 - axis_x_rus_axes3_z*rus_d_c_in_axes3_xz
         rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_8
         rus_Q_xx = 2.0*rus_Q_t_11 - rus_d_c_in_axes3_xx
+        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 + axis_z_rus_axes3_y*rus_Q_t_9
+        rus_Q_yy = 2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
+        rus_Q_t_13 = (
+        rus_Q_xx + rus_Q_yy + rus_d_c_in_axes3_xx + rus_d_c_in_axes3_yy + rus_d_c_in_axes3_zz
+        )
         rus_Q_xy = (
         axis_y_rus_axes3_x*rus_Q_t_6 + axis_y_rus_axes3_y*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_9
             + axis_z_rus_axes3_y*rus_Q_t_8
@@ -2361,14 +2363,10 @@ def _run_dynamics(m, X, V):
         axis_y_rus_axes3_x*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_5 +
             axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8
         )
-        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 + axis_z_rus_axes3_y*rus_Q_t_9
-        rus_Q_yy = 2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
         rus_Q_yz = (
         axis_y_rus_axes3_y*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_6 +
             axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9
         )
-        rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 + axis_z_rus_axes3_z*rus_Q_t_10
-        rus_Q_zz = 2.0*rus_Q_t_13 - rus_d_c_in_axes3_xx
         # (rus-U) velocity and gravity terms of the leg force
         rus_U_x = (
         -axis_x_rus_axes3_x*rus_c_o_in_axes3_x - axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
@@ -2383,25 +2381,22 @@ def _run_dynamics(m, X, V):
             axis_z_rus_axes3_z*rus_c_o_in_axes3_z
         )
         # (M_ta) coupling block of M
-        rus_M_ta_t = rus_Q_xy*rus_q_z
-        rus_M_ta_t_2 = rus_Q_xz*rus_q_y
-        rus_M_ta_t_3 = rus_M_ta_t_2 - rus_M_ta_t
-        rus_M_ta_t_4 = rus_Q_xx*rus_q_z - rus_Q_xz*rus_q_x
-        rus_M_ta_t_5 = rus_Q_xy*rus_q_x - rus_Q_xx*rus_q_y
-        rus_M_ta_t_6 = rus_Q_yz*rus_q_y - rus_Q_yy*rus_q_z
-        rus_M_ta_t_7 = rus_Q_yz*rus_q_x
-        rus_M_ta_t_8 = rus_M_ta_t - rus_M_ta_t_7
-        rus_M_ta_t_9 = rus_Q_yy*rus_q_x - rus_Q_xy*rus_q_y
-        rus_M_ta_t_10 = rus_Q_zz*rus_q_y - rus_Q_yz*rus_q_z
-        rus_M_ta_t_11 = rus_Q_xz*rus_q_z - rus_Q_zz*rus_q_x
-        rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2
+        rus_M_ta_t = rus_Q_xx*rus_q_z - rus_Q_xz*rus_q_x
+        rus_M_ta_t_2 = rus_Q_xx*rus_q_y - rus_Q_xy*rus_q_x
+        rus_M_ta_t_3 = rus_Q_yy*rus_q_z - rus_Q_yz*rus_q_y
+        rus_M_ta_t_4 = rus_Q_yz*rus_q_x
+        rus_M_ta_t_5 = rus_Q_xy*rus_q_z - rus_M_ta_t_4
+        rus_M_ta_t_6 = rus_Q_yy*rus_q_x - rus_Q_xy*rus_q_y
+        rus_M_ta_t_7 = rus_Q_t_13*rus_q_y + rus_Q_yz*rus_q_z
+        rus_M_ta_t_8 = rus_Q_t_13*rus_q_x + rus_Q_xz*rus_q_z
+        rus_M_ta_t_9 = rus_M_ta_t_4 - rus_Q_xz*rus_q_y
         # (M_aa) rotational block of M
-        rus_M_aa_t = rus_M_ta_t_10*rus_q_y - rus_M_ta_t_6*rus_q_z
-        rus_M_aa_t_2 = rus_M_ta_t_11*rus_q_y - rus_M_ta_t_8*rus_q_z
-        rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_y - rus_M_ta_t_9*rus_q_z
-        rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_z - rus_M_ta_t_11*rus_q_x
-        rus_M_aa_t_5 = rus_M_ta_t_5*rus_q_z - rus_M_ta_t_12*rus_q_x
-        rus_M_aa_t_6 = rus_M_ta_t_9*rus_q_x - rus_M_ta_t_5*rus_q_y
+        rus_M_aa_t = rus_M_ta_t_3*rus_q_z - rus_M_ta_t_7*rus_q_y
+        rus_M_aa_t_2 = rus_M_ta_t_8*rus_q_y - rus_M_ta_t_5*rus_q_z
+        rus_M_aa_t_3 = rus_M_ta_t_9*rus_q_y - rus_M_ta_t_6*rus_q_z
+        rus_M_aa_t_4 = rus_M_ta_t*rus_q_z - rus_M_ta_t_8*rus_q_x
+        rus_M_aa_t_5 = rus_M_ta_t_2*rus_q_z + rus_M_ta_t_9*rus_q_x
+        rus_M_aa_t_6 = rus_M_ta_t_2*rus_q_y + rus_M_ta_t_6*rus_q_x
         # (Z_a) rotational part of Z
         rus_Z_a_t = rus_U_z*rus_q_y - rus_U_y*rus_q_z
         rus_Z_a_t_2 = rus_U_x*rus_q_z - rus_U_z*rus_q_x
@@ -2412,8 +2407,9 @@ def _run_dynamics(m, X, V):
         rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (M_tt) translational block of M
         M_tt_rus_xx += rus_Q_xx
@@ -2421,23 +2417,22 @@ def _run_dynamics(m, X, V):
         M_tt_xz += rus_Q_xz
         M_tt_rus_yy += rus_Q_yy
         M_tt_yz += rus_Q_yz
-        M_tt_rus_zz += rus_Q_zz
+        M_tt_t += rus_Q_t_13
         # (M_ta) coupling block of M
-        M_ta_xx += rus_M_ta_t_3
-        M_ta_rus_xy += rus_M_ta_t_4
-        M_ta_rus_xz += rus_M_ta_t_5
-        M_ta_rus_yx += rus_M_ta_t_6
-        M_ta_yy += rus_M_ta_t_8
-        M_ta_rus_yz += rus_M_ta_t_9
-        M_ta_rus_zx += rus_M_ta_t_10
-        M_ta_rus_zy += rus_M_ta_t_11
-        M_ta_zz += rus_M_ta_t_12
+        M_ta_yy += rus_M_ta_t_5
+        M_ta_zz += rus_M_ta_t_9
+        M_ta_rus_xy += rus_M_ta_t
+        M_ta_t += rus_M_ta_t_2
+        M_ta_t_2 += rus_M_ta_t_3
+        M_ta_rus_yz += rus_M_ta_t_6
+        M_ta_t_3 += rus_M_ta_t_7
+        M_ta_rus_zy += rus_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rus_xx += rus_M_aa_t
         M_aa_rus_xy += rus_M_aa_t_2
         M_aa_rus_xz += rus_M_aa_t_3
         M_aa_rus_yy += rus_M_aa_t_4
-        M_aa_rus_yz += rus_M_aa_t_5
+        M_aa_t += rus_M_aa_t_5
         M_aa_rus_zz += rus_M_aa_t_6
         # (Z_t) translational part of Z
         Z_t_rus_x += rus_U_x
@@ -2458,20 +2453,21 @@ def _run_dynamics(m, X, V):
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rus_xx + m_star
     M_tt_yy = M_tt_rus_yy + m_star
-    M_tt_zz = M_tt_rus_zz + m_star
+    M_tt_zz = m_star - M_tt_t
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_rus_xy + h_star_z
-    M_ta_xz = M_ta_rus_xz - h_star_y
-    M_ta_yx = M_ta_rus_yx - h_star_z
+    M_ta_xz = -M_ta_t - h_star_y
+    M_ta_yx = -M_ta_t_2 - h_star_z
     M_ta_yz = M_ta_rus_yz + h_star_x
-    M_ta_zx = M_ta_rus_zx + h_star_y
+    M_ta_zx = h_star_y - M_ta_t_3
     M_ta_zy = M_ta_rus_zy - h_star_x
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_rus_xx
     M_aa_xy = J_star_xy + M_aa_rus_xy
     M_aa_xz = J_star_xz + M_aa_rus_xz
     M_aa_yy = J_star_yy + M_aa_rus_yy
-    M_aa_yz = J_star_yz + M_aa_rus_yz
+    M_aa_yz = J_star_yz - M_aa_t
     M_aa_zz = J_star_zz + M_aa_rus_zz
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_rus_x
@@ -2531,13 +2527,13 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 1287 mul, 897 add, 24 div, 12 sqrt, 0 trig
+# M: 1224 mul, 874 add, 24 div, 12 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        J_star_t_12, J_star_t_14, J_star_t_15, h_star_in_platform_x, h_star_in_platform_y,
         h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -2590,18 +2586,17 @@ def _run_M(m, X):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
-    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_rus_zz, M_ta_xx, M_ta_rus_xy,
-        M_ta_rus_xz, M_ta_rus_yx, M_ta_yy, M_ta_rus_yz, M_ta_rus_zx, M_ta_rus_zy, M_ta_zz,
-        M_aa_rus_xx, M_aa_rus_xy, M_aa_rus_xz, M_aa_rus_yy, M_aa_rus_yz, M_aa_rus_zz,
-    ) = [0.0] * 21
+    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_t, M_ta_yy, M_ta_zz, M_ta_rus_xy,
+        M_ta_t, M_ta_t_2, M_ta_rus_yz, M_ta_t_3, M_ta_rus_zy, M_aa_rus_xx, M_aa_rus_xy,
+        M_aa_rus_xz, M_aa_rus_yy, M_aa_t, M_aa_rus_zz,
+    ) = [0.0] * 20
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
@@ -2669,19 +2664,19 @@ def _run_M(m, X):
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
         rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
-        rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -2713,18 +2708,18 @@ def _run_M(m, X):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
-        rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
+        rus_w_2_in_axes3_x = inv_rus_v_1_t*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z
         # (rus-w_3) reciprocal vector 3
-        rus_w_3_t = inv_rus_v_1_t_2*rus_v_1_t_3*rus_w_3_in_axes3_y
+        rus_w_3_t = inv_rus_v_1_t*rus_v_1_t_2*rus_w_3_in_axes3_y
         # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
         rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z
         # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z
         rus_d_Gamma_3_in_axes3_x = (
-        rus_h_3_in_spec3_z - inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz + rus_d_Gamma_3_t*rus_v_1_t_3 -
+        rus_h_3_in_spec3_z - inv_rus_v_1_t*(rus_J_3_in_axes2_yz + rus_d_Gamma_3_t*rus_v_1_t_2 -
             rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z)
         )
         # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
@@ -2735,42 +2730,42 @@ def _run_M(m, X):
         rus_d_Gamma_2_t_3 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
         rus_d_Gamma_2_t_4 = -rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
         rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_z
-        rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*rus_v_1_t_3
+        rus_d_Gamma_2_t_6 = rus_d_Gamma_2_t_4*rus_v_1_t_2
         rus_d_Gamma_2_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_3_in_axes1_zz) -
+        inv_rus_v_1_t*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_3_in_axes1_zz) -
             rus_d_Gamma_2_t
         )
         rus_d_Gamma_2_in_axes3_y = -rus_d_Gamma_2_t_4 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
         rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_3 - rus_d_Gamma_2_t_2
         # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rus_d_Gamma_1_in_axes3_x = (
-        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_1_in_spec1_zz -
+        inv_rus_v_1_t*(rus_d_Gamma_2_t_5 + rus_d_Gamma_2_t_6 - rus_J_1_in_spec1_zz -
             rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t
         )
         # (rus-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_d_G_in_axes3_zy = rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_z
         # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rus_d_c_in_axes3_xx = (
-        inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x + rus_d_Gamma_3_in_axes3_x*rus_w_3_t +
+        inv_rus_v_1_t*rus_d_Gamma_1_in_axes3_x + rus_d_Gamma_3_in_axes3_x*rus_w_3_t +
             rus_h_3_in_spec3_z*rus_w_3_t - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
-            rus_h_3_in_spec3_y*(inv_rus_v_1_t_2*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x)
+            rus_h_3_in_spec3_y*(inv_rus_v_1_t*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x)
         )
         rus_d_c_in_axes3_xy = (
-        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y + rus_d_Gamma_3_in_axes3_y*rus_w_3_t -
+        inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_y + rus_d_Gamma_3_in_axes3_y*rus_w_3_t -
             rus_d_phi_3_in_axes3_xy - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x
         )
         rus_d_c_in_axes3_xz = (
-        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_Gamma_3_in_axes3_z*rus_w_3_t +
+        inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_z + rus_d_Gamma_3_in_axes3_z*rus_w_3_t +
             rus_d_alpha_3_t*rus_h_3_in_spec3_y - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x
+        )
+        rus_d_c_in_axes3_zz = (
+        rus_e_1_in_axes3_x*rus_h_3_in_spec3_z*rus_w_2_in_axes3_z -
+            rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z - rus_d_alpha_3_t*rus_h_3_in_spec3_x
         )
         # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
         rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
         rus_Q_t_2 = 0.5*rus_Q_t
-        rus_Q_t_3 = (
-        rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z +
-            rus_d_alpha_3_t*rus_h_3_in_spec3_x -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z*rus_w_2_in_axes3_z
-        )
+        rus_Q_t_3 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_zz
         rus_Q_t_4 = 0.5*rus_Q_t_3
         rus_Q_t_5 = (
         axis_y_rus_axes3_x*rus_Q_t_2 + axis_z_rus_axes3_x*rus_d_G_in_axes3_zy -
@@ -2789,6 +2784,11 @@ def _run_M(m, X):
         rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 - axis_x_rus_axes3_z*rus_d_c_in_axes3_xz
         rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_8
         rus_Q_xx = 2.0*rus_Q_t_11 - rus_d_c_in_axes3_xx
+        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 + axis_z_rus_axes3_y*rus_Q_t_9
+        rus_Q_yy = 2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
+        rus_Q_t_13 = (
+        rus_Q_xx + rus_Q_yy + rus_d_c_in_axes3_xx + rus_d_c_in_axes3_yy + rus_d_c_in_axes3_zz
+        )
         rus_Q_xy = (
         axis_y_rus_axes3_x*rus_Q_t_6 + axis_y_rus_axes3_y*rus_Q_t_5 + axis_z_rus_axes3_x*rus_Q_t_9
             + axis_z_rus_axes3_y*rus_Q_t_8
@@ -2797,38 +2797,32 @@ def _run_M(m, X):
         axis_y_rus_axes3_x*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_5 +
             axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8
         )
-        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 + axis_z_rus_axes3_y*rus_Q_t_9
-        rus_Q_yy = 2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
         rus_Q_yz = (
         axis_y_rus_axes3_y*rus_Q_t_7 + axis_y_rus_axes3_z*rus_Q_t_6 +
             axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9
         )
-        rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 + axis_z_rus_axes3_z*rus_Q_t_10
-        rus_Q_zz = 2.0*rus_Q_t_13 - rus_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        rus_M_ta_t = rus_Q_xy*rus_q_z
-        rus_M_ta_t_2 = rus_Q_xz*rus_q_y
-        rus_M_ta_t_3 = rus_M_ta_t_2 - rus_M_ta_t
-        rus_M_ta_t_4 = rus_Q_xx*rus_q_z - rus_Q_xz*rus_q_x
-        rus_M_ta_t_5 = rus_Q_xy*rus_q_x - rus_Q_xx*rus_q_y
-        rus_M_ta_t_6 = rus_Q_yz*rus_q_y - rus_Q_yy*rus_q_z
-        rus_M_ta_t_7 = rus_Q_yz*rus_q_x
-        rus_M_ta_t_8 = rus_M_ta_t - rus_M_ta_t_7
-        rus_M_ta_t_9 = rus_Q_yy*rus_q_x - rus_Q_xy*rus_q_y
-        rus_M_ta_t_10 = rus_Q_zz*rus_q_y - rus_Q_yz*rus_q_z
-        rus_M_ta_t_11 = rus_Q_xz*rus_q_z - rus_Q_zz*rus_q_x
-        rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2
+        rus_M_ta_t = rus_Q_xx*rus_q_z - rus_Q_xz*rus_q_x
+        rus_M_ta_t_2 = rus_Q_xx*rus_q_y - rus_Q_xy*rus_q_x
+        rus_M_ta_t_3 = rus_Q_yy*rus_q_z - rus_Q_yz*rus_q_y
+        rus_M_ta_t_4 = rus_Q_yz*rus_q_x
+        rus_M_ta_t_5 = rus_Q_xy*rus_q_z - rus_M_ta_t_4
+        rus_M_ta_t_6 = rus_Q_yy*rus_q_x - rus_Q_xy*rus_q_y
+        rus_M_ta_t_7 = rus_Q_t_13*rus_q_y + rus_Q_yz*rus_q_z
+        rus_M_ta_t_8 = rus_Q_t_13*rus_q_x + rus_Q_xz*rus_q_z
+        rus_M_ta_t_9 = rus_M_ta_t_4 - rus_Q_xz*rus_q_y
         # (M_aa) rotational block of M
-        rus_M_aa_t = rus_M_ta_t_10*rus_q_y - rus_M_ta_t_6*rus_q_z
-        rus_M_aa_t_2 = rus_M_ta_t_11*rus_q_y - rus_M_ta_t_8*rus_q_z
-        rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_y - rus_M_ta_t_9*rus_q_z
-        rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_z - rus_M_ta_t_11*rus_q_x
-        rus_M_aa_t_5 = rus_M_ta_t_5*rus_q_z - rus_M_ta_t_12*rus_q_x
-        rus_M_aa_t_6 = rus_M_ta_t_9*rus_q_x - rus_M_ta_t_5*rus_q_y
+        rus_M_aa_t = rus_M_ta_t_3*rus_q_z - rus_M_ta_t_7*rus_q_y
+        rus_M_aa_t_2 = rus_M_ta_t_8*rus_q_y - rus_M_ta_t_5*rus_q_z
+        rus_M_aa_t_3 = rus_M_ta_t_9*rus_q_y - rus_M_ta_t_6*rus_q_z
+        rus_M_aa_t_4 = rus_M_ta_t*rus_q_z - rus_M_ta_t_8*rus_q_x
+        rus_M_aa_t_5 = rus_M_ta_t_2*rus_q_z + rus_M_ta_t_9*rus_q_x
+        rus_M_aa_t_6 = rus_M_ta_t_2*rus_q_y + rus_M_ta_t_6*rus_q_x
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (M_tt) translational block of M
         M_tt_rus_xx += rus_Q_xx
@@ -2836,41 +2830,41 @@ def _run_M(m, X):
         M_tt_xz += rus_Q_xz
         M_tt_rus_yy += rus_Q_yy
         M_tt_yz += rus_Q_yz
-        M_tt_rus_zz += rus_Q_zz
+        M_tt_t += rus_Q_t_13
         # (M_ta) coupling block of M
-        M_ta_xx += rus_M_ta_t_3
-        M_ta_rus_xy += rus_M_ta_t_4
-        M_ta_rus_xz += rus_M_ta_t_5
-        M_ta_rus_yx += rus_M_ta_t_6
-        M_ta_yy += rus_M_ta_t_8
-        M_ta_rus_yz += rus_M_ta_t_9
-        M_ta_rus_zx += rus_M_ta_t_10
-        M_ta_rus_zy += rus_M_ta_t_11
-        M_ta_zz += rus_M_ta_t_12
+        M_ta_yy += rus_M_ta_t_5
+        M_ta_zz += rus_M_ta_t_9
+        M_ta_rus_xy += rus_M_ta_t
+        M_ta_t += rus_M_ta_t_2
+        M_ta_t_2 += rus_M_ta_t_3
+        M_ta_rus_yz += rus_M_ta_t_6
+        M_ta_t_3 += rus_M_ta_t_7
+        M_ta_rus_zy += rus_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rus_xx += rus_M_aa_t
         M_aa_rus_xy += rus_M_aa_t_2
         M_aa_rus_xz += rus_M_aa_t_3
         M_aa_rus_yy += rus_M_aa_t_4
-        M_aa_rus_yz += rus_M_aa_t_5
+        M_aa_t += rus_M_aa_t_5
         M_aa_rus_zz += rus_M_aa_t_6
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rus_xx + m_star
     M_tt_yy = M_tt_rus_yy + m_star
-    M_tt_zz = M_tt_rus_zz + m_star
+    M_tt_zz = m_star - M_tt_t
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_rus_xy + h_star_z
-    M_ta_xz = M_ta_rus_xz - h_star_y
-    M_ta_yx = M_ta_rus_yx - h_star_z
+    M_ta_xz = -M_ta_t - h_star_y
+    M_ta_yx = -M_ta_t_2 - h_star_z
     M_ta_yz = M_ta_rus_yz + h_star_x
-    M_ta_zx = M_ta_rus_zx + h_star_y
+    M_ta_zx = h_star_y - M_ta_t_3
     M_ta_zy = M_ta_rus_zy - h_star_x
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_rus_xx
     M_aa_xy = J_star_xy + M_aa_rus_xy
     M_aa_xz = J_star_xz + M_aa_rus_xz
     M_aa_yy = J_star_yy + M_aa_rus_yy
-    M_aa_yz = J_star_yz + M_aa_rus_yz
+    M_aa_yz = J_star_yz - M_aa_t
     M_aa_zz = J_star_zz + M_aa_rus_zz
     # (M_tt) translational block of M
     out_M[0] = M_tt_xx
@@ -2914,14 +2908,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1482 mul, 1008 add, 24 div, 12 sqrt, 0 trig
+# Z: 1413 mul, 984 add, 24 div, 12 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2986,13 +2980,12 @@ def _run_Z(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3074,19 +3067,19 @@ def _run_Z(m, X, V):
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
-        rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -3118,12 +3111,12 @@ def _run_Z(m, X, V):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
         # (rus-qd_1) rate of joint 1
         rus_qd_1_t = (
-        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
         )
         # (rus-qd_2) rate of joint 2
@@ -3134,7 +3127,7 @@ def _run_Z(m, X, V):
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_3
+            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_2
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
@@ -3162,33 +3155,30 @@ def _run_Z(m, X, V):
         axis_z_rus_axes3_x*rus_u_1_x + axis_z_rus_axes3_y*rus_u_1_y + axis_z_rus_axes3_z*rus_u_1_z
         )
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_bias_t_2 = (
-        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
-            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
+        rus_bias_t = (
+        rus_d_2_in_axes3_x*rus_omega_1_in_axes3_y - rus_omega_1_in_axes3_x*rus_r_1_in_axes3_y
         )
-        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_2 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
+        rus_bias_t_2*rus_omega_2_in_axes3_y - rus_bias_t*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
+        rus_bias_t*rus_omega_1_in_axes3_x - rus_bias_t_2*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
+            rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x*rus_r_1_in_axes3_z -
+            rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y*rus_r_1_in_axes3_z
         )
         # (rus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - rus_bias_in_axes3_x
         rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - rus_bias_in_axes3_y
         rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1_o) remainder of: acceleration of joint 1
-        rus_qdd_1_o_t = inv_rus_v_1_t_2*rus_rel_o_in_axes3_x
+        rus_qdd_1_o_t = inv_rus_v_1_t*rus_rel_o_in_axes3_x
         # (rus-qdd_3_o) remainder of: acceleration of joint 3
-        rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*rus_v_1_t_3 - rus_rel_o_in_axes3_y)
+        rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*rus_v_1_t_2 - rus_rel_o_in_axes3_y)
         # (rus-alpha_2_o) remainder of: angular acceleration of link 2
         rus_alpha_2_o_in_axes2_z = (
         rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z + rus_qdd_1_o_t*rus_v_1_in_axes3_z) -
@@ -3266,7 +3256,7 @@ def _run_Z(m, X, V):
         rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         # (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rus_c_o_in_axes3_x = (
-        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z + rus_G_o_in_axes3_y*rus_v_1_t_3 -
+        rus_c_t + inv_rus_v_1_t*(rus_N_1_o_in_axes1_z + rus_G_o_in_axes3_y*rus_v_1_t_2 -
             rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y
         )
@@ -3297,8 +3287,9 @@ def _run_Z(m, X, V):
         rus_Z_a_t_3 = rus_U_y*rus_q_x - rus_U_x*rus_q_y
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (Z_t) translational part of Z
         Z_t_rus_x += rus_U_x
@@ -3327,7 +3318,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 570 mul, 294 add, 18 div, 12 sqrt, 0 trig
+# H: 546 mul, 282 add, 18 div, 12 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -3423,12 +3414,9 @@ def _run_H(m, X):
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
         rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -3460,18 +3448,18 @@ def _run_H(m, X):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
-        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
-        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t
         # (rus-H_a_1) moment of the column's unit force about the platform origin
         rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9
         rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7
         rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_1_t) >
+            _TOLERANCE * rus_size)
         )
         # (rus-w_1) reciprocal vector 1
         out_H[_H_rus[0][leg]] = -rus_w_1_t_7
@@ -3484,7 +3472,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1569 mul, 1083 add, 24 div, 12 sqrt, 0 trig
+# required: 1494 mul, 1053 add, 24 div, 12 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3582,9 +3570,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
@@ -3608,27 +3593,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_rus_x, R_a_rus_y, R_a_rus_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -3696,19 +3678,19 @@ def _run_required(m, X, V, A):
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
-        rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -3740,15 +3722,15 @@ def _run_required(m, X, V, A):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
-        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
-        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
         # (rus-qd_1) rate of joint 1
         rus_qd_1_t = (
-        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
         )
         # (rus-qd_2) rate of joint 2
@@ -3759,7 +3741,7 @@ def _run_required(m, X, V, A):
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_3
+            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_2
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
@@ -3790,35 +3772,32 @@ def _run_required(m, X, V, A):
             axis_z_rus_axes3_z*rus_S_ddot_z
         )
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_bias_t_2 = (
-        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
-            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
+        rus_bias_t = (
+        rus_d_2_in_axes3_x*rus_omega_1_in_axes3_y - rus_omega_1_in_axes3_x*rus_r_1_in_axes3_y
         )
-        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_2 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
+        rus_bias_t_2*rus_omega_2_in_axes3_y - rus_bias_t*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
+        rus_bias_t*rus_omega_1_in_axes3_x - rus_bias_t_2*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
+            rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x*rus_r_1_in_axes3_z -
+            rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y*rus_r_1_in_axes3_z
         )
         # (rus-rel) acceleration of the connection point left to the joint accelerations
         rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x
         rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y
         rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
-        rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
+        rus_qdd_1_t = inv_rus_v_1_t*rus_rel_in_axes3_x
         # (rus-qdd_2) acceleration of joint 2
         rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z)
         # (rus-qdd_3) acceleration of joint 3
-        rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 - rus_rel_in_axes3_y)
+        rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_2 - rus_rel_in_axes3_y)
         # (rus-alpha_2) angular acceleration of link 2
         rus_alpha_2_in_axes2_z = rus_qdd_2 - rus_qdd_1_t
         rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_e_1_in_axes3_x
@@ -3887,7 +3866,7 @@ def _run_required(m, X, V, A):
         rus_c_t_2 = rus_h_3_in_spec3_z*(rus_mu_3_t + rus_mu_3_t_3)
         rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         rus_c_in_axes3_x = (
-        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_in_axes1_z + rus_G_in_axes3_y*rus_v_1_t_3 -
+        rus_c_t + inv_rus_v_1_t*(rus_N_1_in_axes1_z + rus_G_in_axes3_y*rus_v_1_t_2 -
             rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y
         )
@@ -3921,8 +3900,9 @@ def _run_required(m, X, V, A):
         rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += rus_c_x
@@ -4074,7 +4054,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 696 mul, 384 add, 24 div, 12 sqrt, 0 trig
+# joint_rates: 654 mul, 360 add, 24 div, 12 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -4191,19 +4171,19 @@ def _run_joint_rates(m, X, V):
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
-        rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -4235,12 +4215,12 @@ def _run_joint_rates(m, X, V):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
         # (rus-qd_1) rate of joint 1
         rus_qd_1_t = (
-        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
         )
         # (rus-qd_2) rate of joint 2
@@ -4251,13 +4231,14 @@ def _run_joint_rates(m, X, V):
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_3
+            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_2
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (rus-qd_1) rate of joint 1
         out_qd[_qd_rus[0][leg]] = -rus_qd_1_t
@@ -4268,7 +4249,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 978 mul, 561 add, 24 div, 12 sqrt, 0 trig
+# joint_accelerations: 912 mul, 537 add, 24 div, 12 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -4415,19 +4396,19 @@ def _run_joint_accelerations(m, X, V, A):
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
-        rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -4459,12 +4440,12 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
         # (rus-qd_1) rate of joint 1
         rus_qd_1_t = (
-        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
         )
         # (rus-qd_2) rate of joint 2
@@ -4475,7 +4456,7 @@ def _run_joint_accelerations(m, X, V, A):
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_3
+            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_2
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
@@ -4504,39 +4485,37 @@ def _run_joint_accelerations(m, X, V, A):
             axis_z_rus_axes3_z*rus_S_ddot_z
         )
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_bias_t_2 = (
-        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
-            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
+        rus_bias_t = (
+        rus_d_2_in_axes3_x*rus_omega_1_in_axes3_y - rus_omega_1_in_axes3_x*rus_r_1_in_axes3_y
         )
-        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_2 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
+        rus_bias_t_2*rus_omega_2_in_axes3_y - rus_bias_t*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
+        rus_bias_t*rus_omega_1_in_axes3_x - rus_bias_t_2*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
+            rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x*rus_r_1_in_axes3_z -
+            rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y*rus_r_1_in_axes3_z
         )
         # (rus-rel) acceleration of the connection point left to the joint accelerations
         rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x
         rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y
         rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
-        rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
+        rus_qdd_1_t = inv_rus_v_1_t*rus_rel_in_axes3_x
         # (rus-qdd_2) acceleration of joint 2
         rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z)
         # (rus-qdd_3) acceleration of joint 3
-        rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 - rus_rel_in_axes3_y)
+        rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_2 - rus_rel_in_axes3_y)
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (rus-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rus[0][leg]] = -rus_qdd_1_t
@@ -4547,7 +4526,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 1428 mul, 957 add, 24 div, 12 sqrt, 0 trig
+# legs: 1362 mul, 933 add, 24 div, 12 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -4700,19 +4679,19 @@ def _run_legs(m, X, V, A):
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_t = rus_c_2*rus_joint2_offset_x
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
+        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
+        rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
-        rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
+        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         )
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -4744,15 +4723,15 @@ def _run_legs(m, X, V, A):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
-        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
-        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t
         # (rus-w_2) reciprocal vector 2
-        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        rus_w_2_in_axes3_z = 1.0/rus_v_2_in_axes3_z
         # (rus-qd_1) rate of joint 1
         rus_qd_1_t = (
-        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
         )
         # (rus-qd_2) rate of joint 2
@@ -4763,7 +4742,7 @@ def _run_legs(m, X, V, A):
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
         axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_3
+            axis_y_rus_axes3_z*rus_S_dot_z - rus_qd_1_t*rus_v_1_t_2
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
@@ -4794,35 +4773,32 @@ def _run_legs(m, X, V, A):
             axis_z_rus_axes3_z*rus_S_ddot_z
         )
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_bias_t_2 = (
-        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
-            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
+        rus_bias_t = (
+        rus_d_2_in_axes3_x*rus_omega_1_in_axes3_y - rus_omega_1_in_axes3_x*rus_r_1_in_axes3_y
         )
-        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_2 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
+        rus_bias_t_2*rus_omega_2_in_axes3_y - rus_bias_t*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
+        rus_bias_t*rus_omega_1_in_axes3_x - rus_bias_t_2*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
+            rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x*rus_r_1_in_axes3_z -
+            rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y*rus_r_1_in_axes3_z
         )
         # (rus-rel) acceleration of the connection point left to the joint accelerations
         rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x
         rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y
         rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
-        rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
+        rus_qdd_1_t = inv_rus_v_1_t*rus_rel_in_axes3_x
         # (rus-qdd_2) acceleration of joint 2
         rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z)
         # (rus-qdd_3) acceleration of joint 3
-        rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 - rus_rel_in_axes3_y)
+        rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_2 - rus_rel_in_axes3_y)
         # (rus-alpha_2) angular acceleration of link 2
         rus_alpha_2_in_axes2_z = rus_qdd_2 - rus_qdd_1_t
         rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_e_1_in_axes3_x
@@ -4891,7 +4867,7 @@ def _run_legs(m, X, V, A):
         rus_c_t_2 = rus_h_3_in_spec3_z*(rus_mu_3_t + rus_mu_3_t_3)
         rus_c_t_3 = rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2)
         rus_c_in_axes3_x = (
-        rus_c_t + inv_rus_v_1_t_2*(rus_N_1_in_axes1_z + rus_G_in_axes3_y*rus_v_1_t_3 -
+        rus_c_t + inv_rus_v_1_t*(rus_N_1_in_axes1_z + rus_G_in_axes3_y*rus_v_1_t_2 -
             rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z -
             rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y
         )
@@ -4921,8 +4897,9 @@ def _run_legs(m, X, V, A):
         )
         ok = (
         ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
+            rus_size)
         )
         # (rus-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_rus[0][leg]] = rus_c_true_x
@@ -5077,7 +5054,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 613 mul, 348 add, 18 div, 25 sqrt, 0 trig
+# condition: 595 mul, 336 add, 18 div, 25 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -5184,12 +5161,11 @@ def _run_condition(m, X):
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
         rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
-        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
+        rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        # (rus-v_2) velocity of the connection point per rate of joint 2
+        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -5221,15 +5197,15 @@ def _run_condition(m, X):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
-        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
-        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
-        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
+        inv_rus_v_1_t = 1.0/rus_v_1_t
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_pivot_size = abs(rus_J_3_t_10)
         rus_pivot_size_2 = abs(rus_J_3_t_15)
-        rus_pivot_size_3 = abs(rus_r_1_t)
-        rus_pivot_size_4 = abs(rus_v_1_t_2)
+        rus_pivot_size_3 = abs(rus_v_2_in_axes3_z)
+        rus_pivot_size_4 = abs(rus_v_1_t)
         rus_least_pivots = (
         least(least(least(sqrt(inv_rus_rho2_1_t*rus_pivot_size), inv_rus_size*rus_pivot_size_3),
             inv_rus_size*rus_pivot_size_4), sqrt(inv_rus_size_t_3*rus_pivot_size_2))
@@ -5247,8 +5223,8 @@ def _run_condition(m, X):
         )
         clear = (
         clear & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (abs(rus_J_3_t_15)
-            > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) > _TOLERANCE * rus_size) &
-            (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
+            > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_2_in_axes3_z) > _TOLERANCE *
+            rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
         reached = reached & (rus_J_3_t_11 >= 0.0)
         # (spread) rms distance of the platform points from their centroid

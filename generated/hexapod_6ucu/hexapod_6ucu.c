@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -879,6 +890,8 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
     const real J_star_t_12 = R(0.5)*J_star_t_11;
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
+    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
@@ -895,6 +908,7 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_12);
     KEEP(J_star_t_14);
+    KEEP(J_star_t_15);
     KEEP(Z_p_t);
     KEEP(Z_p_t_2);
     KEEP(Z_p_t_3);
@@ -1448,8 +1462,8 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
-        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_yy, J_star_zz,
+        J_star_xy, J_star_xz, J_star_yz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
         Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
 
@@ -1519,16 +1533,15 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_zz = m->J_star_t_15 - v->J_star_xx - v->J_star_yy;
     v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
     v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
-    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
-    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
 }
 
 INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
@@ -1560,7 +1573,7 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
     const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
-    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
     v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
         Z_q_t_2*omega_z;
     v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
@@ -1588,7 +1601,7 @@ typedef struct {
         ucu_nu_1_t_5, ucu_phi_4_t, ucu_mu_4_t, ucu_mu_2_t_8, ucu_mu_2_t_9, ucu_mu_2_t_10, ucu_qd_4_2,
         ucu_omega_4_in_axes4_z_2, ucu_zeta_4_in_axes4_x_2, ucu_nu_1_2, ucu_S_ddot_in_axes4_x,
         ucu_S_ddot_in_axes4_y, ucu_S_ddot_in_axes4_z, ucu_qdd_1, ucu_qdd_2, ucu_qdd_4_t, ucu_Q_xx,
-        ucu_Q_xy, ucu_Q_xz, ucu_Q_yy, ucu_Q_yz, ucu_Q_zz, ucu_M_ta_t_10, ucu_M_ta_t_11, ucu_M_ta_t_12,
+        ucu_Q_yy, ucu_Q_zz, ucu_Q_xy, ucu_Q_xz, ucu_Q_yz, ucu_M_ta_t_10, ucu_M_ta_t_11, ucu_M_ta_t_12,
         ucu_M_ta_t_13, ucu_M_ta_t_14, ucu_M_ta_t_15, ucu_M_ta_t_16, ucu_M_ta_t_17, ucu_M_ta_t_18,
         ucu_M_aa_t, ucu_M_aa_t_2, ucu_M_aa_t_3, ucu_M_aa_t_4, ucu_M_aa_t_5, ucu_M_aa_t_6, ucu_U_x,
         ucu_U_y, ucu_U_z, ucu_Z_a_t, ucu_Z_a_t_2, ucu_Z_a_t_3, ucu_acc_4_in_axes4_x,
@@ -2098,16 +2111,15 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t i, values_ucu *v)
         v->axis_z_ucu_axes4_z*ucu_d_G_in_axes4_yz;
     const real ucu_Q_t_9 = v->axis_x_ucu_axes4_x*ucu_Q_t_3 - v->axis_y_ucu_axes4_x*ucu_Q_t_6;
     v->ucu_Q_xx = -2*ucu_Q_t_9;
+    const real ucu_Q_t_10 = v->axis_y_ucu_axes4_y*ucu_Q_t_7 - v->axis_x_ucu_axes4_y*ucu_Q_t_4;
+    v->ucu_Q_yy = -2*ucu_Q_t_10;
+    v->ucu_Q_zz = -ucu_d_c_in_axes4_xx - ucu_d_c_in_axes4_yy - v->ucu_Q_xx - v->ucu_Q_yy;
     v->ucu_Q_xy = v->axis_y_ucu_axes4_y*ucu_Q_t_6 - v->axis_y_ucu_axes4_x*ucu_Q_t_7 +
         v->axis_x_ucu_axes4_x*ucu_Q_t_4 - v->axis_x_ucu_axes4_y*ucu_Q_t_3;
     v->ucu_Q_xz = v->axis_y_ucu_axes4_z*ucu_Q_t_6 - v->axis_y_ucu_axes4_x*ucu_Q_t_8 -
         v->axis_x_ucu_axes4_x*ucu_Q_t_5 - v->axis_x_ucu_axes4_z*ucu_Q_t_3;
-    const real ucu_Q_t_10 = v->axis_y_ucu_axes4_y*ucu_Q_t_7 - v->axis_x_ucu_axes4_y*ucu_Q_t_4;
-    v->ucu_Q_yy = -2*ucu_Q_t_10;
     v->ucu_Q_yz = v->axis_x_ucu_axes4_z*ucu_Q_t_4 - v->axis_y_ucu_axes4_y*ucu_Q_t_8 -
         v->axis_y_ucu_axes4_z*ucu_Q_t_7 - v->axis_x_ucu_axes4_y*ucu_Q_t_5;
-    const real ucu_Q_t_11 = v->axis_y_ucu_axes4_z*ucu_Q_t_8 + v->axis_x_ucu_axes4_z*ucu_Q_t_5;
-    v->ucu_Q_zz = -2*ucu_Q_t_11;
     /* (M_ta) coupling block of M */
     const real ucu_M_ta_t = v->axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xx +
         v->axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yx;
@@ -2121,19 +2133,19 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t i, values_ucu *v)
         v->axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yz;
     const real ucu_M_ta_t_6 = v->axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xz +
         v->axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yz;
-    const real ucu_M_ta_t_7 = -v->ucu_Q_xy*v->ucu_q_z;
+    const real ucu_M_ta_t_7 = v->ucu_Q_xy*v->ucu_q_z;
     const real ucu_M_ta_t_8 = v->ucu_Q_xz*v->ucu_q_y;
     const real ucu_M_ta_t_9 = v->ucu_Q_yz*v->ucu_q_x;
-    v->ucu_M_ta_t_10 = ucu_M_ta_t_7 - v->axis_x_ucu_axes4_x*ucu_M_ta_t -
-        v->axis_z_ucu_axes4_x*ucu_M_ta_t_4 + ucu_M_ta_t_8;
+    v->ucu_M_ta_t_10 = ucu_M_ta_t_8 - v->axis_x_ucu_axes4_x*ucu_M_ta_t -
+        v->axis_z_ucu_axes4_x*ucu_M_ta_t_4 - ucu_M_ta_t_7;
     v->ucu_M_ta_t_11 = v->ucu_Q_xx*v->ucu_q_z - v->axis_x_ucu_axes4_y*ucu_M_ta_t -
         v->axis_z_ucu_axes4_y*ucu_M_ta_t_4 - v->ucu_Q_xz*v->ucu_q_x;
     v->ucu_M_ta_t_12 = v->ucu_Q_xy*v->ucu_q_x - v->axis_x_ucu_axes4_z*ucu_M_ta_t -
         v->axis_z_ucu_axes4_z*ucu_M_ta_t_4 - v->ucu_Q_xx*v->ucu_q_y;
     v->ucu_M_ta_t_13 = v->ucu_Q_yz*v->ucu_q_y - v->axis_x_ucu_axes4_x*ucu_M_ta_t_2 -
         v->axis_z_ucu_axes4_x*ucu_M_ta_t_5 - v->ucu_Q_yy*v->ucu_q_z;
-    v->ucu_M_ta_t_14 = v->axis_x_ucu_axes4_y*ucu_M_ta_t_2 + v->axis_z_ucu_axes4_y*ucu_M_ta_t_5
-        + ucu_M_ta_t_7 + ucu_M_ta_t_9;
+    v->ucu_M_ta_t_14 = ucu_M_ta_t_7 - v->axis_x_ucu_axes4_y*ucu_M_ta_t_2 -
+        v->axis_z_ucu_axes4_y*ucu_M_ta_t_5 - ucu_M_ta_t_9;
     v->ucu_M_ta_t_15 = v->ucu_Q_yy*v->ucu_q_x - v->axis_x_ucu_axes4_z*ucu_M_ta_t_2 -
         v->axis_z_ucu_axes4_z*ucu_M_ta_t_5 - v->ucu_Q_xy*v->ucu_q_y;
     v->ucu_M_ta_t_16 = v->ucu_Q_zz*v->ucu_q_y - v->axis_x_ucu_axes4_x*ucu_M_ta_t_3 -
@@ -2145,9 +2157,9 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t i, values_ucu *v)
     /* (M_aa) rotational block of M */
     v->ucu_M_aa_t = v->ucu_n_m1_x*(v->axis_x_ucu_axes4_x*ucu_dalpha_G_m1_in_axes4_x -
         v->axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) + ucu_d_G_m_xz*v->ucu_q_y -
-        ucu_d_G_m_xy*v->ucu_q_z + v->ucu_M_ta_t_16*v->ucu_q_y - v->ucu_M_ta_t_13*v->ucu_q_z;
+        ucu_d_G_m_xy*v->ucu_q_z - v->ucu_M_ta_t_13*v->ucu_q_z + v->ucu_M_ta_t_16*v->ucu_q_y;
     v->ucu_M_aa_t_2 = ucu_dalpha_G_m1_y*v->ucu_n_m1_x + ucu_d_G_m_xx*v->ucu_q_z -
-        ucu_d_G_m_xz*v->ucu_q_x + v->ucu_M_ta_t_17*v->ucu_q_y + v->ucu_M_ta_t_14*v->ucu_q_z;
+        ucu_d_G_m_xz*v->ucu_q_x + v->ucu_M_ta_t_17*v->ucu_q_y - v->ucu_M_ta_t_14*v->ucu_q_z;
     v->ucu_M_aa_t_3 = ucu_dalpha_G_m1_z*v->ucu_n_m1_x + ucu_d_G_m_xy*v->ucu_q_x -
         ucu_d_G_m_xx*v->ucu_q_y - v->ucu_M_ta_t_15*v->ucu_q_z + v->ucu_M_ta_t_18*v->ucu_q_y;
     v->ucu_M_aa_t_4 = ucu_dalpha_G_m1_y*v->ucu_n_m1_y + ucu_d_G_m_yx*v->ucu_q_z -
@@ -2440,11 +2452,8 @@ INLINE void stage_ucu_legs_required(const prepared *m, size_t i, values_ucu *v)
         v->axis_z_ucu_axes4_z*ucu_mu_4_in_axes4_z;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2460,14 +2469,78 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[19*w + k] = v->h_star_y;
     s[20*w + k] = v->h_star_z;
     s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
+    s[22*w + k] = v->J_star_yy;
+    s[23*w + k] = v->J_star_zz;
+    s[24*w + k] = v->J_star_xy;
+    s[25*w + k] = v->J_star_xz;
+    s[26*w + k] = v->J_star_yz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
+}
+
+INLINE void any_place_ucu_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -2500,7 +2573,7 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[7*count + k], add, v.ucu_M_ta_t_11);  /* M_ta_xy_of_legs */
     gather(&terms[8*count + k], add, v.ucu_M_ta_t_12);  /* M_ta_xz_of_legs */
     gather(&terms[9*count + k], add, v.ucu_M_ta_t_13);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.ucu_M_ta_t_14);  /* M_ta_t */
+    gather(&terms[10*count + k], add, v.ucu_M_ta_t_14);  /* M_ta_yy */
     gather(&terms[11*count + k], add, v.ucu_M_ta_t_15);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v.ucu_M_ta_t_16);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v.ucu_M_ta_t_17);  /* M_ta_zy_of_legs */
@@ -2537,19 +2610,6 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
         LEAST_4);
 }
 
-INLINE void dynamics_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    H[(3*NU + i)*w + k] = o[3*count + at];
-    H[(4*NU + i)*w + k] = o[4*count + at];
-    H[(5*NU + i)*w + k] = o[5*count + at];
-    t->singular[k] += o[6*count + at];
-    t->total[k] += o[7*count + at];
-}
-
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
@@ -2580,19 +2640,19 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
+    const real J_star_xy = s[24*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
+    const real J_star_xz = s[25*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
+    const real J_star_yy = s[22*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
+    const real J_star_yz = s[26*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
+    const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
@@ -2638,9 +2698,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
@@ -2669,7 +2729,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     Z[4*w + k] = Z_a_y;
     Z[5*w + k] = Z_a_z;
     t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
         (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
@@ -2677,15 +2737,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] = {0}, sums[27] = {0};
-    real terms_ucu[27*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[8*LEGS(LEGS_OF_ucu)] = {0};
+    real s[33] CLEARED, sums[27] CLEARED;
+    real terms_ucu[27*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[8*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         dynamics_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, V, terms_ucu, o_ucu);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
-        dynamics_place_ucu(1, i, 0, i, LEGS(LEGS_OF_ucu), o_ucu, H, t);
+        any_place_ucu(1, i, 0, i, LEGS(LEGS_OF_ucu), o_ucu, H, t);
     }
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
@@ -2701,7 +2761,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_ucu[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
@@ -2710,7 +2770,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_ucu(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ucu);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_ucu(LANES, i, k, k, LANES, o_ucu, H, t);
+            any_place_ucu(LANES, i, k, k, LANES, o_ucu, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2719,31 +2779,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void M_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2762,7 +2797,7 @@ INLINE void M_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[7*count + k], add, v.ucu_M_ta_t_11);  /* M_ta_xy_of_legs */
     gather(&terms[8*count + k], add, v.ucu_M_ta_t_12);  /* M_ta_xz_of_legs */
     gather(&terms[9*count + k], add, v.ucu_M_ta_t_13);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.ucu_M_ta_t_14);  /* M_ta_t */
+    gather(&terms[10*count + k], add, v.ucu_M_ta_t_14);  /* M_ta_yy */
     gather(&terms[11*count + k], add, v.ucu_M_ta_t_15);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v.ucu_M_ta_t_16);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v.ucu_M_ta_t_17);  /* M_ta_zy_of_legs */
@@ -2779,11 +2814,6 @@ INLINE void M_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
         UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
         LEAST_4);
-}
-
-INLINE void M_place_ucu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -2816,19 +2846,19 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
+    const real J_star_xy = s[24*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
+    const real J_star_xz = s[25*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
+    const real J_star_yy = s[22*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
+    const real J_star_yz = s[26*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
+    const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -2854,9 +2884,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
@@ -2877,22 +2907,22 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(5*NV + 4)*w + k] = M_aa_yz;
     M[(5*NV + 5)*w + k] = M_aa_zz;
     t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
         (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
         M_aa_zz))));
 }
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] = {0}, sums[21] = {0};
-    real terms_ucu[21*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[LEGS(LEGS_OF_ucu)] = {0};
+    real s[27] CLEARED, sums[21] CLEARED;
+    real terms_ucu[21*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         M_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, terms_ucu, o_ucu);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
-        M_place_ucu(0, i, LEGS(LEGS_OF_ucu), o_ucu, t);
+        any_place_ucu_2(0, i, LEGS(LEGS_OF_ucu), o_ucu, t);
     }
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
@@ -2907,7 +2937,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
     real o_ucu[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
@@ -2915,7 +2945,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_ucu(m, LANES, i, k, k, LANES, 1, s, X, sums, o_ucu);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_ucu(k, k, LANES, o_ucu, t);
+            any_place_ucu_2(k, k, LANES, o_ucu, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2924,22 +2954,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_Z_dynamics(m, w, k, V, v);
@@ -2971,11 +2985,6 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
         UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
         LEAST_4);
-}
-
-INLINE void Z_place_ucu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -3013,15 +3022,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_ucu[6*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[LEGS(LEGS_OF_ucu)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         Z_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, V, terms_ucu, o_ucu);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
-        Z_place_ucu(0, i, LEGS(LEGS_OF_ucu), o_ucu, t);
+        any_place_ucu_2(0, i, LEGS(LEGS_OF_ucu), o_ucu, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
@@ -3037,7 +3046,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_ucu[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3046,7 +3055,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_ucu(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ucu);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_ucu(k, k, LANES, o_ucu, t);
+            any_place_ucu_2(k, k, LANES, o_ucu, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -3055,22 +3064,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -3091,30 +3084,17 @@ INLINE void H_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_4);
 }
 
-INLINE void H_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    H[(3*NU + i)*w + k] = o[3*count + at];
-    H[(4*NU + i)*w + k] = o[4*count + at];
-    H[(5*NU + i)*w + k] = o[5*count + at];
-    t->singular[k] += o[6*count + at];
-    t->total[k] += o[7*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ucu[8*LEGS(LEGS_OF_ucu)] = {0};
+    real s[18] CLEARED;
+    real o_ucu[8*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         H_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, o_ucu);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
-        H_place_ucu(1, i, 0, i, LEGS(LEGS_OF_ucu), o_ucu, H, t);
+        any_place_ucu(1, i, 0, i, LEGS(LEGS_OF_ucu), o_ucu, H, t);
     }
 }
 
@@ -3125,46 +3105,19 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_ucu[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_ucu(m, LANES, i, k, k, LANES, s, X, o_ucu);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_ucu(LANES, i, k, k, LANES, o_ucu, H, t);
+            any_place_ucu(LANES, i, k, k, LANES, o_ucu, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -3175,9 +3128,6 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
-    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
-    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
         v->W_p_t_4*v->h_star_x;
@@ -3207,27 +3157,24 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
-    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+    const real mu_p_t_4 = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
-    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
+        mu_p_t_2*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
-    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
+        mu_p_t_3*omega_in_platform_x;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
-    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
-        v->R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
-        v->R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
-        v->R_zz*mu_p_in_platform_z;
+        m->J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
+        mu_p_t*omega_in_platform_y;
+    const real mu_p_x = a_t_z*v->h_star_y - a_t_y*v->h_star_z + v->R_xx*mu_p_t_4 +
+        v->R_xy*mu_p_t_5 + v->R_xz*mu_p_t_6;
+    const real mu_p_y = a_t_x*v->h_star_z - a_t_z*v->h_star_x + v->R_yx*mu_p_t_4 +
+        v->R_yy*mu_p_t_5 + v->R_yz*mu_p_t_6;
+    const real mu_p_z = a_t_y*v->h_star_x - a_t_x*v->h_star_y + v->R_zx*mu_p_t_4 +
+        v->R_zy*mu_p_t_5 + v->R_zz*mu_p_t_6;
     s[18*w + k] = f_p_x;
     s[19*w + k] = f_p_y;
     s[20*w + k] = f_p_z;
@@ -3328,12 +3275,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_ucu[6*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[7*LEGS(LEGS_OF_ucu)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[7*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
-        required_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, V, A, terms_ucu, o_ucu);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_ucu); i += BESIDE(LEGS_OF_ucu)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ucu); ++k) {
+            required_legs_ucu(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ucu), 0, s, X, V, A, terms_ucu,
+                o_ucu);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         required_place_ucu(1, i, 0, i, LEGS(LEGS_OF_ucu), o_ucu, H, t);
@@ -3352,7 +3302,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_ucu[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3370,22 +3320,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void inverse_kinematics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -3424,10 +3358,10 @@ INLINE void inverse_kinematics_place_ucu(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
+    real s[18] CLEARED;
+    real o_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         inverse_kinematics_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, o_ucu);
     }
@@ -3443,7 +3377,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_ucu[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3456,22 +3390,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
@@ -3508,10 +3426,10 @@ INLINE void joint_rates_place_ucu(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] = {0};
-    real o_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
+    real s[18] CLEARED;
+    real o_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         joint_rates_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, V, o_ucu);
     }
@@ -3527,7 +3445,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_ucu[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3540,33 +3458,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3607,10 +3498,10 @@ INLINE void joint_accelerations_place_ucu(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
+    real s[18] CLEARED;
+    real o_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         joint_accelerations_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, V, A, o_ucu);
     }
@@ -3626,7 +3517,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_ucu[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3639,33 +3530,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3728,13 +3592,15 @@ INLINE void legs_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ucu[10*LEGS(LEGS_OF_ucu)] = {0};
+    real s[18] CLEARED;
+    real o_ucu[10*LEGS(LEGS_OF_ucu)] CLEARED;
     clear(actuator, 36);
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
-        legs_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, V, A, o_ucu);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_ucu); i += BESIDE(LEGS_OF_ucu)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ucu); ++k) {
+            legs_legs_ucu(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ucu), s, X, V, A, o_ucu);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         legs_place_ucu(1, i, 0, i, LEGS(LEGS_OF_ucu), o_ucu, leg_force, actuator, t);
@@ -3742,22 +3608,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3794,11 +3644,6 @@ INLINE void potential_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, 
         LEAST_2);
 }
 
-INLINE void potential_place_ucu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -3811,15 +3656,18 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] = {0}, sums[1] = {0};
-    real terms_ucu[LEGS(LEGS_OF_ucu)] = {0}, o_ucu[LEGS(LEGS_OF_ucu)] = {0};
+    real s[19] CLEARED, sums[1] CLEARED;
+    real terms_ucu[LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
-        potential_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, terms_ucu, o_ucu);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_ucu); i += BESIDE(LEGS_OF_ucu)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ucu); ++k) {
+            potential_legs_ucu(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ucu), 0, s, X, terms_ucu,
+                o_ucu);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
-        potential_place_ucu(0, i, LEGS(LEGS_OF_ucu), o_ucu, t);
+        any_place_ucu_2(0, i, LEGS(LEGS_OF_ucu), o_ucu, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
@@ -3920,8 +3768,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[1] = {0};
-    real terms_ucu[LEGS(LEGS_OF_ucu)] = {0}, o_ucu[9*LEGS(LEGS_OF_ucu)] = {0};
+    real s[18] CLEARED, sums[1] CLEARED;
+    real terms_ucu[LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[9*LEGS(LEGS_OF_ucu)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -4293,7 +4141,7 @@ int hexapod_6ucu_inverse_dynamics(const prepared *m, const real *X, const real *
     const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -4342,8 +4190,8 @@ int hexapod_6ucu_forward_dynamics(const prepared *m, const real *X, const real *
     *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4412,7 +4260,7 @@ int hexapod_6ucu_leg_reactions(const prepared *m, const real *X, const real *V, 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real solve_1[NV] = {0}, leg_force[6*NL] = {0}, actuator[36] = {0}, forces[NL*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[6*NL] CLEARED, actuator[36] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4429,7 +4277,7 @@ int hexapod_6ucu_leg_reactions(const prepared *m, const real *X, const real *V, 
 int hexapod_6ucu_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4450,8 +4298,8 @@ int hexapod_6ucu_condition(const prepared *m, const real *X, real *sigma_out, re
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4482,9 +4330,9 @@ int hexapod_6ucu_manipulability(const prepared *m, const real *X, real *measure_
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4516,9 +4364,9 @@ int hexapod_6ucu_singularity_distance(const prepared *m, const real *X, real *ac
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4549,7 +4397,7 @@ int hexapod_6ucu_singularity_distance(const prepared *m, const real *X, real *ac
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[6] = {0}, residual[NU] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_2[6] = {0}, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4634,7 +4482,7 @@ int hexapod_6ucu_dissipation(const prepared *m, const real *X, const real *V, re
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -4647,7 +4495,7 @@ int hexapod_6ucu_dissipation(const prepared *m, const real *X, const real *V, re
 
 int hexapod_6ucu_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4660,7 +4508,7 @@ int hexapod_6ucu_joint_margins(const prepared *m, const real *X, real *margins_o
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17, 18, 19, 20, 21, 22, 23};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4675,7 +4523,7 @@ int hexapod_6ucu_joint_margins(const prepared *m, const real *X, real *margins_o
 
 int hexapod_6ucu_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4689,7 +4537,7 @@ int hexapod_6ucu_within_limits(const prepared *m, const real *X, real *within_ou
 
 int hexapod_6ucu_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4700,7 +4548,7 @@ int hexapod_6ucu_actuator_positions(const prepared *m, const real *X, real *q_ou
 
 int hexapod_6ucu_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4712,7 +4560,7 @@ int hexapod_6ucu_actuator_rates(const prepared *m, const real *X, const real *V,
 int hexapod_6ucu_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4724,7 +4572,7 @@ int hexapod_6ucu_actuator_accelerations(const prepared *m, const real *X, const 
 int hexapod_6ucu_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4784,7 +4632,7 @@ int hexapod_6ucu_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 
 int hexapod_6ucu_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -4800,7 +4648,7 @@ int hexapod_6ucu_retract(const real *X, const real *step, real *X_moved_out)
 
 int hexapod_6ucu_difference(const real *X0, const real *X1, real *step_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -4816,7 +4664,8 @@ int hexapod_6ucu_difference(const real *X0, const real *X1, real *step_out)
 
 int hexapod_6ucu_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
+        {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -119,7 +119,7 @@ typedef struct {
             ucu_potential_t[8], ucu_potential_t_2[8], ucu_potential_t_3[8];
     hexapod_6ucu_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } hexapod_6ucu_model;
@@ -138,13 +138,13 @@ extern const char *const hexapod_6ucu_ACTUATOR_NAMES[HEXAPOD_6UCU_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *model);
 
-/* Inertia matrix M. 2355 mul, 1563 add, 30 div, 18 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 2334 mul, 1575 add, 30 div, 18 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hexapod_6ucu_M(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, hexapod_6ucu_real
     *M);
 size_t hexapod_6ucu_M_batch(const hexapod_6ucu_model *model, size_t n, const hexapod_6ucu_real *X,
     hexapod_6ucu_real *M, int *status);
 
-/* Velocity and gravity terms Z. 2118 mul, 1536 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 2115 mul, 1536 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hexapod_6ucu_Z(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *Z);
@@ -180,7 +180,7 @@ size_t hexapod_6ucu_joint_accelerations_batch(const hexapod_6ucu_model *model, s
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A,
     hexapod_6ucu_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 3756 mul, 2685 add, 30 div, 18 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 3735 mul, 2697 add, 30 div, 18 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexapod_6ucu_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *M, hexapod_6ucu_real *Z, hexapod_6ucu_real *H);
@@ -188,7 +188,7 @@ size_t hexapod_6ucu_dynamics_batch(const hexapod_6ucu_model *model, size_t n, co
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *M, hexapod_6ucu_real *Z,
     hexapod_6ucu_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 2187 mul, 1623 add, 30 div, 18 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 2178 mul, 1617 add, 30 div, 18 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hexapod_6ucu_inverse_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
@@ -198,7 +198,7 @@ size_t hexapod_6ucu_inverse_dynamics_batch(const hexapod_6ucu_model *model, size
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const
     hexapod_6ucu_real *wrench, hexapod_6ucu_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 3756 mul, 2685 add, 30 div, 18
+/* Acceleration A under the actuator forces tau and the wrench. 3735 mul, 2697 add, 30 div, 18
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexapod_6ucu_forward_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
@@ -277,7 +277,7 @@ int hexapod_6ucu_dissipation(const hexapod_6ucu_model *model, const hexapod_6ucu
 size_t hexapod_6ucu_dissipation_batch(const hexapod_6ucu_model *model, size_t n, const
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *dissipation, int *status);
 
-/* Generalised momentum M V. 2355 mul, 1563 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 2334 mul, 1575 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hexapod_6ucu_momentum(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *momentum);

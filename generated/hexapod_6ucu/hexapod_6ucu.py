@@ -694,6 +694,7 @@ def _prepare(p):
     J_star_t_12 = 0.5*J_star_t_11
     J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
+    J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
@@ -705,9 +706,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_ucu,
         (ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yy, ucu_J_2_in_spec2_yz,
@@ -730,8 +731,8 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_ucu,
         (ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yy, ucu_J_2_in_spec2_yz,
@@ -750,9 +751,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_ucu,
         (ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yz, ucu_J_4_in_spec4_xy,
@@ -1879,14 +1880,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 3756 mul, 2685 add, 30 div, 18 sqrt, 0 trig
+# dynamics: 3735 mul, 2697 add, 30 div, 18 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1953,13 +1954,12 @@ def _run_dynamics(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -1976,7 +1976,7 @@ def _run_dynamics(m, X, V):
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_ucu_xx, M_tt_xy, M_tt_xz, M_tt_ucu_yy, M_tt_yz, M_tt_ucu_zz, M_ta_xx, M_ta_ucu_xy,
-        M_ta_ucu_xz, M_ta_ucu_yx, M_ta_t, M_ta_ucu_yz, M_ta_ucu_zx, M_ta_ucu_zy, M_ta_zz,
+        M_ta_ucu_xz, M_ta_ucu_yx, M_ta_yy, M_ta_ucu_yz, M_ta_ucu_zx, M_ta_ucu_zy, M_ta_zz,
         M_aa_ucu_xx, M_aa_ucu_xy, M_aa_ucu_xz, M_aa_ucu_yy, M_aa_ucu_yz, M_aa_ucu_zz, Z_t_ucu_x,
         Z_t_ucu_y, Z_t_ucu_z, Z_a_ucu_x, Z_a_ucu_y, Z_a_ucu_z,
     ) = [0.0] * 27
@@ -2591,6 +2591,9 @@ def _run_dynamics(m, X, V):
         ucu_Q_t_8 = axis_y_ucu_axes4_z*ucu_Q_t_2 - axis_z_ucu_axes4_z*ucu_d_G_in_axes4_yz
         ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_6
         ucu_Q_xx = -2.0*ucu_Q_t_9
+        ucu_Q_t_10 = axis_y_ucu_axes4_y*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_4
+        ucu_Q_yy = -2.0*ucu_Q_t_10
+        ucu_Q_zz = -ucu_Q_xx - ucu_Q_yy - ucu_d_c_in_axes4_xx - ucu_d_c_in_axes4_yy
         ucu_Q_xy = (
         axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_y_ucu_axes4_y*ucu_Q_t_6 - axis_x_ucu_axes4_y*ucu_Q_t_3
             - axis_y_ucu_axes4_x*ucu_Q_t_7
@@ -2599,14 +2602,10 @@ def _run_dynamics(m, X, V):
         axis_y_ucu_axes4_z*ucu_Q_t_6 - axis_x_ucu_axes4_x*ucu_Q_t_5 - axis_x_ucu_axes4_z*ucu_Q_t_3
             - axis_y_ucu_axes4_x*ucu_Q_t_8
         )
-        ucu_Q_t_10 = axis_y_ucu_axes4_y*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_4
-        ucu_Q_yy = -2.0*ucu_Q_t_10
         ucu_Q_yz = (
         axis_x_ucu_axes4_z*ucu_Q_t_4 - axis_x_ucu_axes4_y*ucu_Q_t_5 - axis_y_ucu_axes4_y*ucu_Q_t_8
             - axis_y_ucu_axes4_z*ucu_Q_t_7
         )
-        ucu_Q_t_11 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_z*ucu_Q_t_8
-        ucu_Q_zz = -2.0*ucu_Q_t_11
         # (ucu-c_m_o) remainder of: moment of the leg on the platform without actuation
         ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*ucu_n_m1_in_axes4_x
         # (ucu-U) velocity and gravity terms of the leg force
@@ -2641,11 +2640,11 @@ def _run_dynamics(m, X, V):
         ucu_M_ta_t_6 = (
         axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xz + axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yz
         )
-        ucu_M_ta_t_7 = -ucu_Q_xy*ucu_q_z
+        ucu_M_ta_t_7 = ucu_Q_xy*ucu_q_z
         ucu_M_ta_t_8 = ucu_Q_xz*ucu_q_y
         ucu_M_ta_t_9 = ucu_Q_yz*ucu_q_x
         ucu_M_ta_t_10 = (
-        ucu_M_ta_t_7 + ucu_M_ta_t_8 - axis_x_ucu_axes4_x*ucu_M_ta_t -
+        ucu_M_ta_t_8 - ucu_M_ta_t_7 - axis_x_ucu_axes4_x*ucu_M_ta_t -
             axis_z_ucu_axes4_x*ucu_M_ta_t_4
         )
         ucu_M_ta_t_11 = (
@@ -2661,7 +2660,7 @@ def _run_dynamics(m, X, V):
             ucu_Q_yy*ucu_q_z
         )
         ucu_M_ta_t_14 = (
-        ucu_M_ta_t_7 + ucu_M_ta_t_9 + axis_x_ucu_axes4_y*ucu_M_ta_t_2 +
+        ucu_M_ta_t_7 - ucu_M_ta_t_9 - axis_x_ucu_axes4_y*ucu_M_ta_t_2 -
             axis_z_ucu_axes4_y*ucu_M_ta_t_5
         )
         ucu_M_ta_t_15 = (
@@ -2687,8 +2686,8 @@ def _run_dynamics(m, X, V):
             axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) - ucu_M_ta_t_13*ucu_q_z - ucu_d_G_m_xy*ucu_q_z
         )
         ucu_M_aa_t_2 = (
-        ucu_M_ta_t_14*ucu_q_z + ucu_M_ta_t_17*ucu_q_y + ucu_d_G_m_xx*ucu_q_z +
-            ucu_dalpha_G_m1_y*ucu_n_m1_x - ucu_d_G_m_xz*ucu_q_x
+        ucu_M_ta_t_17*ucu_q_y + ucu_d_G_m_xx*ucu_q_z + ucu_dalpha_G_m1_y*ucu_n_m1_x -
+            ucu_M_ta_t_14*ucu_q_z - ucu_d_G_m_xz*ucu_q_x
         )
         ucu_M_aa_t_3 = (
         ucu_M_ta_t_18*ucu_q_y + ucu_d_G_m_xy*ucu_q_x + ucu_dalpha_G_m1_z*ucu_n_m1_x -
@@ -2742,7 +2741,7 @@ def _run_dynamics(m, X, V):
         M_ta_ucu_xy += ucu_M_ta_t_11
         M_ta_ucu_xz += ucu_M_ta_t_12
         M_ta_ucu_yx += ucu_M_ta_t_13
-        M_ta_t += ucu_M_ta_t_14
+        M_ta_yy += ucu_M_ta_t_14
         M_ta_ucu_yz += ucu_M_ta_t_15
         M_ta_ucu_zx += ucu_M_ta_t_16
         M_ta_ucu_zy += ucu_M_ta_t_17
@@ -2815,8 +2814,8 @@ def _run_dynamics(m, X, V):
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -M_ta_t
-    out_M[25] = -M_ta_t
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
@@ -2846,13 +2845,13 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 2355 mul, 1563 add, 30 div, 18 sqrt, 0 trig
+# M: 2334 mul, 1575 add, 30 div, 18 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        J_star_t_12, J_star_t_14, J_star_t_15, h_star_in_platform_x, h_star_in_platform_y,
         h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -2905,16 +2904,15 @@ def _run_M(m, X):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
     M_tt_ucu_xx, M_tt_xy, M_tt_xz, M_tt_ucu_yy, M_tt_yz, M_tt_ucu_zz, M_ta_xx, M_ta_ucu_xy,
-        M_ta_ucu_xz, M_ta_ucu_yx, M_ta_t, M_ta_ucu_yz, M_ta_ucu_zx, M_ta_ucu_zy, M_ta_zz,
+        M_ta_ucu_xz, M_ta_ucu_yx, M_ta_yy, M_ta_ucu_yz, M_ta_ucu_zx, M_ta_ucu_zy, M_ta_zz,
         M_aa_ucu_xx, M_aa_ucu_xy, M_aa_ucu_xz, M_aa_ucu_yy, M_aa_ucu_yz, M_aa_ucu_zz,
     ) = [0.0] * 21
     for leg, k in legs[0]:
@@ -3256,6 +3254,9 @@ def _run_M(m, X):
         ucu_Q_t_8 = axis_y_ucu_axes4_z*ucu_Q_t_2 - axis_z_ucu_axes4_z*ucu_d_G_in_axes4_yz
         ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_6
         ucu_Q_xx = -2.0*ucu_Q_t_9
+        ucu_Q_t_10 = axis_y_ucu_axes4_y*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_4
+        ucu_Q_yy = -2.0*ucu_Q_t_10
+        ucu_Q_zz = -ucu_Q_xx - ucu_Q_yy - ucu_d_c_in_axes4_xx - ucu_d_c_in_axes4_yy
         ucu_Q_xy = (
         axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_y_ucu_axes4_y*ucu_Q_t_6 - axis_x_ucu_axes4_y*ucu_Q_t_3
             - axis_y_ucu_axes4_x*ucu_Q_t_7
@@ -3264,14 +3265,10 @@ def _run_M(m, X):
         axis_y_ucu_axes4_z*ucu_Q_t_6 - axis_x_ucu_axes4_x*ucu_Q_t_5 - axis_x_ucu_axes4_z*ucu_Q_t_3
             - axis_y_ucu_axes4_x*ucu_Q_t_8
         )
-        ucu_Q_t_10 = axis_y_ucu_axes4_y*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_4
-        ucu_Q_yy = -2.0*ucu_Q_t_10
         ucu_Q_yz = (
         axis_x_ucu_axes4_z*ucu_Q_t_4 - axis_x_ucu_axes4_y*ucu_Q_t_5 - axis_y_ucu_axes4_y*ucu_Q_t_8
             - axis_y_ucu_axes4_z*ucu_Q_t_7
         )
-        ucu_Q_t_11 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_z*ucu_Q_t_8
-        ucu_Q_zz = -2.0*ucu_Q_t_11
         # (M_ta) coupling block of M
         ucu_M_ta_t = (
         axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xx + axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yx
@@ -3291,11 +3288,11 @@ def _run_M(m, X):
         ucu_M_ta_t_6 = (
         axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xz + axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yz
         )
-        ucu_M_ta_t_7 = -ucu_Q_xy*ucu_q_z
+        ucu_M_ta_t_7 = ucu_Q_xy*ucu_q_z
         ucu_M_ta_t_8 = ucu_Q_xz*ucu_q_y
         ucu_M_ta_t_9 = ucu_Q_yz*ucu_q_x
         ucu_M_ta_t_10 = (
-        ucu_M_ta_t_7 + ucu_M_ta_t_8 - axis_x_ucu_axes4_x*ucu_M_ta_t -
+        ucu_M_ta_t_8 - ucu_M_ta_t_7 - axis_x_ucu_axes4_x*ucu_M_ta_t -
             axis_z_ucu_axes4_x*ucu_M_ta_t_4
         )
         ucu_M_ta_t_11 = (
@@ -3311,7 +3308,7 @@ def _run_M(m, X):
             ucu_Q_yy*ucu_q_z
         )
         ucu_M_ta_t_14 = (
-        ucu_M_ta_t_7 + ucu_M_ta_t_9 + axis_x_ucu_axes4_y*ucu_M_ta_t_2 +
+        ucu_M_ta_t_7 - ucu_M_ta_t_9 - axis_x_ucu_axes4_y*ucu_M_ta_t_2 -
             axis_z_ucu_axes4_y*ucu_M_ta_t_5
         )
         ucu_M_ta_t_15 = (
@@ -3337,8 +3334,8 @@ def _run_M(m, X):
             axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) - ucu_M_ta_t_13*ucu_q_z - ucu_d_G_m_xy*ucu_q_z
         )
         ucu_M_aa_t_2 = (
-        ucu_M_ta_t_14*ucu_q_z + ucu_M_ta_t_17*ucu_q_y + ucu_d_G_m_xx*ucu_q_z +
-            ucu_dalpha_G_m1_y*ucu_n_m1_x - ucu_d_G_m_xz*ucu_q_x
+        ucu_M_ta_t_17*ucu_q_y + ucu_d_G_m_xx*ucu_q_z + ucu_dalpha_G_m1_y*ucu_n_m1_x -
+            ucu_M_ta_t_14*ucu_q_z - ucu_d_G_m_xz*ucu_q_x
         )
         ucu_M_aa_t_3 = (
         ucu_M_ta_t_18*ucu_q_y + ucu_d_G_m_xy*ucu_q_x + ucu_dalpha_G_m1_z*ucu_n_m1_x -
@@ -3375,7 +3372,7 @@ def _run_M(m, X):
         M_ta_ucu_xy += ucu_M_ta_t_11
         M_ta_ucu_xz += ucu_M_ta_t_12
         M_ta_ucu_yx += ucu_M_ta_t_13
-        M_ta_t += ucu_M_ta_t_14
+        M_ta_yy += ucu_M_ta_t_14
         M_ta_ucu_yz += ucu_M_ta_t_15
         M_ta_ucu_zx += ucu_M_ta_t_16
         M_ta_ucu_zy += ucu_M_ta_t_17
@@ -3424,8 +3421,8 @@ def _run_M(m, X):
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -M_ta_t
-    out_M[25] = -M_ta_t
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
@@ -3447,14 +3444,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 2118 mul, 1536 add, 30 div, 18 sqrt, 0 trig
+# Z: 2115 mul, 1536 add, 30 div, 18 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3519,13 +3516,12 @@ def _run_Z(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -4110,7 +4106,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 2187 mul, 1623 add, 30 div, 18 sqrt, 0 trig
+# required: 2178 mul, 1617 add, 30 div, 18 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -4208,9 +4204,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
@@ -4234,27 +4227,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_ucu_x, R_a_ucu_y, R_a_ucu_z = [0.0] * 6
     for leg, k in legs[0]:
         (

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -921,6 +932,8 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
     const real J_star_t_12 = R(0.5)*J_star_t_11;
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
+    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
@@ -939,6 +952,7 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_12);
     KEEP(J_star_t_14);
+    KEEP(J_star_t_15);
     KEEP(Z_p_t);
     KEEP(Z_p_t_2);
     KEEP(Z_p_t_3);
@@ -1493,8 +1507,8 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
-        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_yy, J_star_zz,
+        J_star_xy, J_star_xz, J_star_yz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
         Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
 
@@ -1564,16 +1578,15 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_zz = m->J_star_t_15 - v->J_star_xx - v->J_star_yy;
     v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
     v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
-    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
-    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
 }
 
 INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
@@ -1605,7 +1618,7 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
     const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
-    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
     v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
         Z_q_t_2*omega_z;
     v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
@@ -1629,10 +1642,10 @@ typedef struct {
         uhs_bias_in_axes3_x, uhs_bias_in_axes3_y, uhs_bias_in_axes3_z, uhs_mu_3_t_2, uhs_mu_3_t_3,
         uhs_mu_3_t_4, uhs_mu_2_t_8, uhs_mu_2_t_9, uhs_mu_2_t_10, uhs_c_t, uhs_c_t_2, uhs_c_t_3,
         uhs_S_ddot_in_axes3_x, uhs_S_ddot_in_axes3_y, uhs_S_ddot_in_axes3_z, uhs_qdd_1, uhs_qdd_2,
-        uhs_qdd_3, uhs_Q_xx, uhs_Q_xy, uhs_Q_xz, uhs_Q_yy, uhs_Q_yz, uhs_Q_zz, uhs_M_ta_t_3,
-        uhs_M_ta_t_4, uhs_M_ta_t_5, uhs_M_ta_t_6, uhs_M_ta_t_8, uhs_M_ta_t_9, uhs_M_ta_t_10,
-        uhs_M_ta_t_11, uhs_M_ta_t_12, uhs_M_aa_t, uhs_M_aa_t_2, uhs_M_aa_t_3, uhs_M_aa_t_4,
-        uhs_M_aa_t_5, uhs_M_aa_t_6, uhs_U_x, uhs_U_y, uhs_U_z, uhs_Z_a_t, uhs_Z_a_t_2, uhs_Z_a_t_3,
+        uhs_qdd_3, uhs_Q_xx, uhs_Q_yy, uhs_Q_zz, uhs_Q_xy, uhs_Q_xz, uhs_Q_yz, uhs_M_ta_t,
+        uhs_M_ta_t_2, uhs_M_ta_t_3, uhs_M_ta_t_5, uhs_M_ta_t_6, uhs_M_ta_t_7, uhs_M_ta_t_8,
+        uhs_M_ta_t_9, uhs_M_aa_t, uhs_M_aa_t_2, uhs_M_aa_t_3, uhs_M_aa_t_4, uhs_M_aa_t_5,
+        uhs_M_aa_t_6, uhs_U_x, uhs_U_y, uhs_U_z, uhs_Z_a_t, uhs_Z_a_t_2, uhs_Z_a_t_3,
         uhs_acc_3_in_axes3_x, uhs_acc_3_in_axes3_y, uhs_acc_3_in_axes3_z, uhs_c_in_axes3_x,
         uhs_c_in_axes3_y, uhs_c_in_axes3_z;
 } values_uhs;
@@ -1961,15 +1974,17 @@ INLINE void stage_uhs_M_dynamics(const prepared *m, size_t i, values_uhs *v)
     const real uhs_d_c_in_axes3_xz = m->uhs_d_phi_3_t[i] -
         uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_x -
         uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_x;
+    const real uhs_d_c_in_axes3_yy =
+        m->uhs_h_3_in_spec3_x[i]*(v->uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
+        v->uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y) -
+        uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y -
+        uhs_d_alpha_3_in_axes3_zy*m->uhs_h_3_in_spec3_y[i] -
+        uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y;
     const real uhs_d_c_in_axes3_yz = -m->uhs_d_phi_3_in_axes3_yz[i] -
         uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_y -
         uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_y;
     /* (uhs-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real uhs_Q_t = uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y +
-        uhs_d_alpha_3_in_axes3_zy*m->uhs_h_3_in_spec3_y[i] +
-        uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y -
-        m->uhs_h_3_in_spec3_x[i]*(v->uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
-        v->uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y) + uhs_d_c_in_axes3_xx;
+    const real uhs_Q_t = uhs_d_c_in_axes3_xx - uhs_d_c_in_axes3_yy;
     const real uhs_Q_t_2 = R(0.5)*uhs_Q_t;
     const real uhs_Q_t_3 = m->uhs_d_G_in_axes3_zz[i] + uhs_d_c_in_axes3_xx;
     const real uhs_Q_t_4 = R(0.5)*uhs_Q_t_3;
@@ -1987,37 +2002,33 @@ INLINE void stage_uhs_M_dynamics(const prepared *m, size_t i, values_uhs *v)
         v->axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xz;
     const real uhs_Q_t_11 = v->axis_y_uhs_axes3_x*uhs_Q_t_5 - v->axis_z_uhs_axes3_x*uhs_Q_t_8;
     v->uhs_Q_xx = -uhs_d_c_in_axes3_xx - 2*uhs_Q_t_11;
+    const real uhs_Q_t_12 = v->axis_y_uhs_axes3_y*uhs_Q_t_6 - v->axis_z_uhs_axes3_y*uhs_Q_t_9;
+    v->uhs_Q_yy = -uhs_d_c_in_axes3_xx - 2*uhs_Q_t_12;
+    v->uhs_Q_zz = m->uhs_d_G_in_axes3_zz[i] - uhs_d_c_in_axes3_xx - uhs_d_c_in_axes3_yy -
+        v->uhs_Q_xx - v->uhs_Q_yy;
     v->uhs_Q_xy = v->axis_z_uhs_axes3_x*uhs_Q_t_9 + v->axis_z_uhs_axes3_y*uhs_Q_t_8 -
         v->axis_y_uhs_axes3_x*uhs_Q_t_6 - v->axis_y_uhs_axes3_y*uhs_Q_t_5;
     v->uhs_Q_xz = v->axis_z_uhs_axes3_x*uhs_Q_t_10 + v->axis_z_uhs_axes3_z*uhs_Q_t_8 -
         v->axis_y_uhs_axes3_x*uhs_Q_t_7 - v->axis_y_uhs_axes3_z*uhs_Q_t_5;
-    const real uhs_Q_t_12 = v->axis_y_uhs_axes3_y*uhs_Q_t_6 - v->axis_z_uhs_axes3_y*uhs_Q_t_9;
-    v->uhs_Q_yy = -uhs_d_c_in_axes3_xx - 2*uhs_Q_t_12;
     v->uhs_Q_yz = v->axis_z_uhs_axes3_y*uhs_Q_t_10 + v->axis_z_uhs_axes3_z*uhs_Q_t_9 -
         v->axis_y_uhs_axes3_y*uhs_Q_t_7 - v->axis_y_uhs_axes3_z*uhs_Q_t_6;
-    const real uhs_Q_t_13 = v->axis_y_uhs_axes3_z*uhs_Q_t_7 -
-        v->axis_z_uhs_axes3_z*uhs_Q_t_10;
-    v->uhs_Q_zz = -uhs_d_c_in_axes3_xx - 2*uhs_Q_t_13;
     /* (M_ta) coupling block of M */
-    const real uhs_M_ta_t = -v->uhs_Q_xy*v->uhs_q_z;
-    const real uhs_M_ta_t_2 = v->uhs_Q_xz*v->uhs_q_y;
-    v->uhs_M_ta_t_3 = uhs_M_ta_t + uhs_M_ta_t_2;
-    v->uhs_M_ta_t_4 = v->uhs_Q_xx*v->uhs_q_z - v->uhs_Q_xz*v->uhs_q_x;
-    v->uhs_M_ta_t_5 = v->uhs_Q_xy*v->uhs_q_x - v->uhs_Q_xx*v->uhs_q_y;
-    v->uhs_M_ta_t_6 = v->uhs_Q_yz*v->uhs_q_y - v->uhs_Q_yy*v->uhs_q_z;
-    const real uhs_M_ta_t_7 = v->uhs_Q_yz*v->uhs_q_x;
-    v->uhs_M_ta_t_8 = uhs_M_ta_t + uhs_M_ta_t_7;
-    v->uhs_M_ta_t_9 = v->uhs_Q_yy*v->uhs_q_x - v->uhs_Q_xy*v->uhs_q_y;
-    v->uhs_M_ta_t_10 = v->uhs_Q_zz*v->uhs_q_y - v->uhs_Q_yz*v->uhs_q_z;
-    v->uhs_M_ta_t_11 = v->uhs_Q_xz*v->uhs_q_z - v->uhs_Q_zz*v->uhs_q_x;
-    v->uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2;
+    v->uhs_M_ta_t = v->uhs_Q_xz*v->uhs_q_x - v->uhs_Q_xx*v->uhs_q_z;
+    v->uhs_M_ta_t_2 = v->uhs_Q_xy*v->uhs_q_x - v->uhs_Q_xx*v->uhs_q_y;
+    v->uhs_M_ta_t_3 = v->uhs_Q_yz*v->uhs_q_y - v->uhs_Q_yy*v->uhs_q_z;
+    const real uhs_M_ta_t_4 = v->uhs_Q_yz*v->uhs_q_x;
+    v->uhs_M_ta_t_5 = v->uhs_Q_xy*v->uhs_q_z - uhs_M_ta_t_4;
+    v->uhs_M_ta_t_6 = v->uhs_Q_yy*v->uhs_q_x - v->uhs_Q_xy*v->uhs_q_y;
+    v->uhs_M_ta_t_7 = v->uhs_Q_zz*v->uhs_q_y - v->uhs_Q_yz*v->uhs_q_z;
+    v->uhs_M_ta_t_8 = v->uhs_Q_xz*v->uhs_q_z - v->uhs_Q_zz*v->uhs_q_x;
+    v->uhs_M_ta_t_9 = uhs_M_ta_t_4 - v->uhs_Q_xz*v->uhs_q_y;
     /* (M_aa) rotational block of M */
-    v->uhs_M_aa_t = v->uhs_M_ta_t_10*v->uhs_q_y - v->uhs_M_ta_t_6*v->uhs_q_z;
-    v->uhs_M_aa_t_2 = v->uhs_M_ta_t_11*v->uhs_q_y + v->uhs_M_ta_t_8*v->uhs_q_z;
-    v->uhs_M_aa_t_3 = v->uhs_M_ta_t_12*v->uhs_q_y - v->uhs_M_ta_t_9*v->uhs_q_z;
-    v->uhs_M_aa_t_4 = v->uhs_M_ta_t_4*v->uhs_q_z - v->uhs_M_ta_t_11*v->uhs_q_x;
-    v->uhs_M_aa_t_5 = v->uhs_M_ta_t_5*v->uhs_q_z - v->uhs_M_ta_t_12*v->uhs_q_x;
-    v->uhs_M_aa_t_6 = v->uhs_M_ta_t_9*v->uhs_q_x - v->uhs_M_ta_t_5*v->uhs_q_y;
+    v->uhs_M_aa_t = v->uhs_M_ta_t_7*v->uhs_q_y - v->uhs_M_ta_t_3*v->uhs_q_z;
+    v->uhs_M_aa_t_2 = v->uhs_M_ta_t_8*v->uhs_q_y - v->uhs_M_ta_t_5*v->uhs_q_z;
+    v->uhs_M_aa_t_3 = v->uhs_M_ta_t_9*v->uhs_q_y - v->uhs_M_ta_t_6*v->uhs_q_z;
+    v->uhs_M_aa_t_4 = v->uhs_M_ta_t*v->uhs_q_z + v->uhs_M_ta_t_8*v->uhs_q_x;
+    v->uhs_M_aa_t_5 = v->uhs_M_ta_t_2*v->uhs_q_z - v->uhs_M_ta_t_9*v->uhs_q_x;
+    v->uhs_M_aa_t_6 = v->uhs_M_ta_t_6*v->uhs_q_x - v->uhs_M_ta_t_2*v->uhs_q_y;
 }
 
 INLINE void stage_uhs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -2237,11 +2248,8 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
         m->inv_uhs_joint3_pitch[i]*uhs_mu_3_in_axes3_z;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2257,14 +2265,78 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[19*w + k] = v->h_star_y;
     s[20*w + k] = v->h_star_z;
     s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
+    s[22*w + k] = v->J_star_yy;
+    s[23*w + k] = v->J_star_zz;
+    s[24*w + k] = v->J_star_xy;
+    s[25*w + k] = v->J_star_xz;
+    s[26*w + k] = v->J_star_yz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
+}
+
+INLINE void any_place_uhs_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -2293,30 +2365,29 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[4*count + k], add, v.uhs_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.uhs_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.uhs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.uhs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.uhs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.uhs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.uhs_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, v.uhs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.uhs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.uhs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.uhs_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.uhs_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v.uhs_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, -v.uhs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.uhs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.uhs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.uhs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.uhs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.uhs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.uhs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.uhs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.uhs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.uhs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.uhs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.uhs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.uhs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.uhs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.uhs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.uhs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.uhs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.uhs_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.uhs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.uhs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.uhs_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[20*count + k], add, v.uhs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[21*count + k], add, v.uhs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[22*count + k], add, v.uhs_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.uhs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.uhs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.uhs_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[23*count + k], add, v.uhs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[24*count + k], add, v.uhs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[25*count + k], add, v.uhs_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (uhs-w_3) reciprocal vector 3 */
     o[0*count + k] = v.uhs_w_3_x;
     o[1*count + k] = v.uhs_w_3_y;
@@ -2333,19 +2404,6 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
         UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
-INLINE void dynamics_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    H[(3*NU + i)*w + k] = o[3*count + at];
-    H[(4*NU + i)*w + k] = o[4*count + at];
-    H[(5*NU + i)*w + k] = o[5*count + at];
-    t->singular[k] += o[6*count + at];
-    t->total[k] += o[7*count + at];
-}
-
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
@@ -2357,13 +2415,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
@@ -2374,41 +2435,41 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
     const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y_of_legs = sums[21*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
-    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_a_y_of_legs = sums[24*w + k];
     const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_a_z_of_legs = sums[25*w + k];
     const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
@@ -2425,7 +2486,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2434,16 +2494,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2465,7 +2523,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     Z[4*w + k] = Z_a_y;
     Z[5*w + k] = Z_a_z;
     t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
         (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
@@ -2473,17 +2531,17 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] = {0}, sums[27] = {0};
-    real terms_uhs[27*LEGS(LEGS_OF_uhs)] = {0}, o_uhs[8*LEGS(LEGS_OF_uhs)] = {0};
+    real s[33] CLEARED, sums[26] CLEARED;
+    real terms_uhs[26*LEGS(LEGS_OF_uhs)] CLEARED, o_uhs[8*LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         dynamics_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, V, terms_uhs, o_uhs);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
-        dynamics_place_uhs(1, i, 0, i, LEGS(LEGS_OF_uhs), o_uhs, H, t);
+        any_place_uhs(1, i, 0, i, LEGS(LEGS_OF_uhs), o_uhs, H, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < 26; ++n) {
         sums[n] = total(terms_uhs + n*LEGS(LEGS_OF_uhs), LEGS_OF_uhs);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2493,20 +2551,20 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[27*LANES];
+    real s[33*LANES], sums[26*LANES];
     real o_uhs[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 27*LANES);
+    clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_uhs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_uhs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_uhs(LANES, i, k, k, LANES, o_uhs, H, t);
+            any_place_uhs(LANES, i, k, k, LANES, o_uhs, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2515,31 +2573,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void M_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2554,31 +2587,25 @@ INLINE void M_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[4*count + k], add, v.uhs_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.uhs_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.uhs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.uhs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.uhs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.uhs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.uhs_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, v.uhs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.uhs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.uhs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.uhs_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.uhs_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v.uhs_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, -v.uhs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.uhs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.uhs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.uhs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.uhs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.uhs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.uhs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.uhs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.uhs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.uhs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.uhs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.uhs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.uhs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.uhs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.uhs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.uhs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.uhs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.uhs_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
         UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
         UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
         UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
-}
-
-INLINE void M_place_uhs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -2592,13 +2619,16 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
@@ -2609,22 +2639,22 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2640,7 +2670,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2649,16 +2678,14 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2672,24 +2699,24 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(5*NV + 4)*w + k] = M_aa_yz;
     M[(5*NV + 5)*w + k] = M_aa_zz;
     t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
         (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
         M_aa_zz))));
 }
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] = {0}, sums[21] = {0};
-    real terms_uhs[21*LEGS(LEGS_OF_uhs)] = {0}, o_uhs[LEGS(LEGS_OF_uhs)] = {0};
+    real s[27] CLEARED, sums[20] CLEARED;
+    real terms_uhs[20*LEGS(LEGS_OF_uhs)] CLEARED, o_uhs[LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         M_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, terms_uhs, o_uhs);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
-        M_place_uhs(0, i, LEGS(LEGS_OF_uhs), o_uhs, t);
+        any_place_uhs_2(0, i, LEGS(LEGS_OF_uhs), o_uhs, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
+    for (size_t n = 0; n < 20; ++n) {
         sums[n] = total(terms_uhs + n*LEGS(LEGS_OF_uhs), LEGS_OF_uhs);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2698,19 +2725,19 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[21*LANES];
+    real s[27*LANES], sums[20*LANES];
     real o_uhs[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 21*LANES);
+    clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_uhs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_uhs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_uhs(k, k, LANES, o_uhs, t);
+            any_place_uhs_2(k, k, LANES, o_uhs, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2719,22 +2746,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_Z_dynamics(m, w, k, V, v);
@@ -2765,11 +2776,6 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
         UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
         UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
         UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
-}
-
-INLINE void Z_place_uhs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -2807,15 +2813,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_uhs[6*LEGS(LEGS_OF_uhs)] = {0}, o_uhs[LEGS(LEGS_OF_uhs)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_uhs[6*LEGS(LEGS_OF_uhs)] CLEARED, o_uhs[LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         Z_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, V, terms_uhs, o_uhs);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
-        Z_place_uhs(0, i, LEGS(LEGS_OF_uhs), o_uhs, t);
+        any_place_uhs_2(0, i, LEGS(LEGS_OF_uhs), o_uhs, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_uhs + n*LEGS(LEGS_OF_uhs), LEGS_OF_uhs);
@@ -2831,7 +2837,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_uhs[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
@@ -2840,7 +2846,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_uhs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_uhs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_uhs(k, k, LANES, o_uhs, t);
+            any_place_uhs_2(k, k, LANES, o_uhs, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2849,22 +2855,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2885,30 +2875,17 @@ INLINE void H_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
         UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]);
 }
 
-INLINE void H_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    H[(3*NU + i)*w + k] = o[3*count + at];
-    H[(4*NU + i)*w + k] = o[4*count + at];
-    H[(5*NU + i)*w + k] = o[5*count + at];
-    t->singular[k] += o[6*count + at];
-    t->total[k] += o[7*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_uhs[8*LEGS(LEGS_OF_uhs)] = {0};
+    real s[18] CLEARED;
+    real o_uhs[8*LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         H_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, o_uhs);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
-        H_place_uhs(1, i, 0, i, LEGS(LEGS_OF_uhs), o_uhs, H, t);
+        any_place_uhs(1, i, 0, i, LEGS(LEGS_OF_uhs), o_uhs, H, t);
     }
 }
 
@@ -2919,46 +2896,19 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_uhs[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_uhs(m, LANES, i, k, k, LANES, s, X, o_uhs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_uhs(LANES, i, k, k, LANES, o_uhs, H, t);
+            any_place_uhs(LANES, i, k, k, LANES, o_uhs, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -2969,9 +2919,6 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
-    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
-    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
         v->W_p_t_4*v->h_star_x;
@@ -3001,27 +2948,24 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
-    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+    const real mu_p_t_4 = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
-    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
+        mu_p_t_2*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
-    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
+        mu_p_t_3*omega_in_platform_x;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
-    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
-        v->R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
-        v->R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
-        v->R_zz*mu_p_in_platform_z;
+        m->J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
+        mu_p_t*omega_in_platform_y;
+    const real mu_p_x = a_t_z*v->h_star_y - a_t_y*v->h_star_z + v->R_xx*mu_p_t_4 +
+        v->R_xy*mu_p_t_5 + v->R_xz*mu_p_t_6;
+    const real mu_p_y = a_t_x*v->h_star_z - a_t_z*v->h_star_x + v->R_yx*mu_p_t_4 +
+        v->R_yy*mu_p_t_5 + v->R_yz*mu_p_t_6;
+    const real mu_p_z = a_t_y*v->h_star_x - a_t_x*v->h_star_y + v->R_zx*mu_p_t_4 +
+        v->R_zy*mu_p_t_5 + v->R_zz*mu_p_t_6;
     s[18*w + k] = f_p_x;
     s[19*w + k] = f_p_y;
     s[20*w + k] = f_p_z;
@@ -3120,12 +3064,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_uhs[6*LEGS(LEGS_OF_uhs)] = {0}, o_uhs[7*LEGS(LEGS_OF_uhs)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_uhs[6*LEGS(LEGS_OF_uhs)] CLEARED, o_uhs[7*LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
-        required_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, V, A, terms_uhs, o_uhs);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_uhs); i += BESIDE(LEGS_OF_uhs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_uhs); ++k) {
+            required_legs_uhs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_uhs), 0, s, X, V, A, terms_uhs,
+                o_uhs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
         required_place_uhs(1, i, 0, i, LEGS(LEGS_OF_uhs), o_uhs, H, t);
@@ -3144,7 +3091,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_uhs[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3162,22 +3109,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void inverse_kinematics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -3210,10 +3141,10 @@ INLINE void inverse_kinematics_place_uhs(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] = {0};
-    real o_uhs[5*LEGS(LEGS_OF_uhs)] = {0};
+    real s[18] CLEARED;
+    real o_uhs[5*LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         inverse_kinematics_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, o_uhs);
     }
@@ -3229,7 +3160,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_uhs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3242,22 +3173,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
@@ -3290,10 +3205,10 @@ INLINE void joint_rates_place_uhs(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] = {0};
-    real o_uhs[5*LEGS(LEGS_OF_uhs)] = {0};
+    real s[18] CLEARED;
+    real o_uhs[5*LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         joint_rates_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, V, o_uhs);
     }
@@ -3309,7 +3224,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_uhs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3322,33 +3237,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3382,10 +3270,10 @@ INLINE void joint_accelerations_place_uhs(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_uhs[5*LEGS(LEGS_OF_uhs)] = {0};
+    real s[18] CLEARED;
+    real o_uhs[5*LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         joint_accelerations_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, V, A, o_uhs);
     }
@@ -3401,7 +3289,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_uhs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3414,33 +3302,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3494,12 +3355,14 @@ INLINE void legs_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] = {0};
-    real o_uhs[7*LEGS(LEGS_OF_uhs)] = {0};
+    real s[18] CLEARED;
+    real o_uhs[7*LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
-        legs_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, V, A, o_uhs);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_uhs); i += BESIDE(LEGS_OF_uhs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_uhs); ++k) {
+            legs_legs_uhs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_uhs), s, X, V, A, o_uhs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
         legs_place_uhs(1, i, 0, i, LEGS(LEGS_OF_uhs), o_uhs, leg_force, actuator, t);
@@ -3507,22 +3370,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3560,11 +3407,6 @@ INLINE void potential_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, 
         UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]);
 }
 
-INLINE void potential_place_uhs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -3577,15 +3419,18 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] = {0}, sums[1] = {0};
-    real terms_uhs[LEGS(LEGS_OF_uhs)] = {0}, o_uhs[LEGS(LEGS_OF_uhs)] = {0};
+    real s[19] CLEARED, sums[1] CLEARED;
+    real terms_uhs[LEGS(LEGS_OF_uhs)] CLEARED, o_uhs[LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
-        potential_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, terms_uhs, o_uhs);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_uhs); i += BESIDE(LEGS_OF_uhs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_uhs); ++k) {
+            potential_legs_uhs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_uhs), 0, s, X, terms_uhs,
+                o_uhs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
-        potential_place_uhs(0, i, LEGS(LEGS_OF_uhs), o_uhs, t);
+        any_place_uhs_2(0, i, LEGS(LEGS_OF_uhs), o_uhs, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_uhs + n*LEGS(LEGS_OF_uhs), LEGS_OF_uhs);
@@ -3682,8 +3527,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[1] = {0};
-    real terms_uhs[LEGS(LEGS_OF_uhs)] = {0}, o_uhs[9*LEGS(LEGS_OF_uhs)] = {0};
+    real s[18] CLEARED, sums[1] CLEARED;
+    real terms_uhs[LEGS(LEGS_OF_uhs)] CLEARED, o_uhs[9*LEGS(LEGS_OF_uhs)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -4055,7 +3900,7 @@ int hexapod_6uhs_inverse_dynamics(const prepared *m, const real *X, const real *
     const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -4104,8 +3949,8 @@ int hexapod_6uhs_forward_dynamics(const prepared *m, const real *X, const real *
     *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4174,7 +4019,7 @@ int hexapod_6uhs_leg_reactions(const prepared *m, const real *X, const real *V, 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[18] CLEARED, forces[3*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4191,7 +4036,7 @@ int hexapod_6uhs_leg_reactions(const prepared *m, const real *X, const real *V, 
 int hexapod_6uhs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4212,8 +4057,8 @@ int hexapod_6uhs_condition(const prepared *m, const real *X, real *sigma_out, re
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4244,9 +4089,9 @@ int hexapod_6uhs_manipulability(const prepared *m, const real *X, real *measure_
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4278,9 +4123,9 @@ int hexapod_6uhs_singularity_distance(const prepared *m, const real *X, real *ac
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4311,7 +4156,7 @@ int hexapod_6uhs_singularity_distance(const prepared *m, const real *X, real *ac
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[6] = {0}, residual[NU] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_2[6] = {0}, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4396,7 +4241,7 @@ int hexapod_6uhs_dissipation(const prepared *m, const real *X, const real *V, re
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -4409,7 +4254,7 @@ int hexapod_6uhs_dissipation(const prepared *m, const real *X, const real *V, re
 
 int hexapod_6uhs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4422,7 +4267,7 @@ int hexapod_6uhs_joint_margins(const prepared *m, const real *X, real *margins_o
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4437,7 +4282,7 @@ int hexapod_6uhs_joint_margins(const prepared *m, const real *X, real *margins_o
 
 int hexapod_6uhs_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4451,7 +4296,7 @@ int hexapod_6uhs_within_limits(const prepared *m, const real *X, real *within_ou
 
 int hexapod_6uhs_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4462,7 +4307,7 @@ int hexapod_6uhs_actuator_positions(const prepared *m, const real *X, real *q_ou
 
 int hexapod_6uhs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4474,7 +4319,7 @@ int hexapod_6uhs_actuator_rates(const prepared *m, const real *X, const real *V,
 int hexapod_6uhs_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4486,7 +4331,7 @@ int hexapod_6uhs_actuator_accelerations(const prepared *m, const real *X, const 
 int hexapod_6uhs_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4546,7 +4391,7 @@ int hexapod_6uhs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 
 int hexapod_6uhs_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -4562,7 +4407,7 @@ int hexapod_6uhs_retract(const real *X, const real *step, real *X_moved_out)
 
 int hexapod_6uhs_difference(const real *X0, const real *X1, real *step_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -4578,7 +4423,8 @@ int hexapod_6uhs_difference(const real *X0, const real *X1, real *step_out)
 
 int hexapod_6uhs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
+        {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

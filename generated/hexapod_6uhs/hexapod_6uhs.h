@@ -125,7 +125,7 @@ typedef struct {
             uhs_size[8], uhs_size_t[8];
     hexapod_6uhs_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } hexapod_6uhs_model;
@@ -144,13 +144,13 @@ extern const char *const hexapod_6uhs_ACTUATOR_NAMES[HEXAPOD_6UHS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *model);
 
-/* Inertia matrix M. 1311 mul, 945 add, 24 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1290 mul, 946 add, 24 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV). */
 int hexapod_6uhs_M(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, hexapod_6uhs_real
     *M);
 size_t hexapod_6uhs_M_batch(const hexapod_6uhs_model *model, size_t n, const hexapod_6uhs_real *X,
     hexapod_6uhs_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1572 mul, 1194 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1569 mul, 1194 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hexapod_6uhs_Z(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, hexapod_6uhs_real *Z);
@@ -186,7 +186,7 @@ size_t hexapod_6uhs_joint_accelerations_batch(const hexapod_6uhs_model *model, s
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A,
     hexapod_6uhs_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 2514 mul, 1917 add, 24 div, 12 sqrt, 12 trig. In: X
+/* M, Z and H together, sharing the work. 2493 mul, 1918 add, 24 div, 12 sqrt, 12 trig. In: X
    (NQ), V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexapod_6uhs_dynamics(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, hexapod_6uhs_real *M, hexapod_6uhs_real *Z, hexapod_6uhs_real *H);
@@ -194,7 +194,7 @@ size_t hexapod_6uhs_dynamics_batch(const hexapod_6uhs_model *model, size_t n, co
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *M, hexapod_6uhs_real *Z,
     hexapod_6uhs_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1659 mul, 1269 add, 24 div, 12 sqrt, 12
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1650 mul, 1263 add, 24 div, 12 sqrt, 12
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hexapod_6uhs_inverse_dynamics(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
@@ -204,7 +204,7 @@ size_t hexapod_6uhs_inverse_dynamics_batch(const hexapod_6uhs_model *model, size
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, const
     hexapod_6uhs_real *wrench, hexapod_6uhs_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2514 mul, 1917 add, 24 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 2493 mul, 1918 add, 24 div, 12
    sqrt, 12 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexapod_6uhs_forward_dynamics(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
@@ -283,7 +283,7 @@ int hexapod_6uhs_dissipation(const hexapod_6uhs_model *model, const hexapod_6uhs
 size_t hexapod_6uhs_dissipation_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1311 mul, 945 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 1290 mul, 946 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hexapod_6uhs_momentum(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, hexapod_6uhs_real *momentum);

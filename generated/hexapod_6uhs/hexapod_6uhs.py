@@ -724,6 +724,7 @@ def _prepare(p):
     J_star_t_12 = 0.5*J_star_t_11
     J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
+    J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
@@ -737,9 +738,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_uhs,
         (inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yy,
@@ -762,8 +763,8 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_uhs,
         (inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yy,
@@ -782,9 +783,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_uhs,
         (inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yz,
@@ -1908,7 +1909,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 2514 mul, 1917 add, 24 div, 12 sqrt, 12 trig
+# dynamics: 2493 mul, 1918 add, 24 div, 12 sqrt, 12 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -1916,8 +1917,8 @@ def _run_dynamics(m, X, V):
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1984,13 +1985,12 @@ def _run_dynamics(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2006,11 +2006,11 @@ def _run_dynamics(m, X, V):
     Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
-    M_tt_uhs_xx, M_tt_xy, M_tt_xz, M_tt_uhs_yy, M_tt_yz, M_tt_uhs_zz, M_ta_xx, M_ta_uhs_xy,
-        M_ta_uhs_xz, M_ta_uhs_yx, M_ta_t, M_ta_uhs_yz, M_ta_uhs_zx, M_ta_uhs_zy, M_ta_zz,
-        M_aa_uhs_xx, M_aa_uhs_xy, M_aa_uhs_xz, M_aa_uhs_yy, M_aa_uhs_yz, M_aa_uhs_zz, Z_t_uhs_x,
-        Z_t_uhs_y, Z_t_uhs_z, Z_a_uhs_x, Z_a_uhs_y, Z_a_uhs_z,
-    ) = [0.0] * 27
+    M_tt_uhs_xx, M_tt_xy, M_tt_xz, M_tt_uhs_yy, M_tt_yz, M_tt_uhs_zz, M_ta_yy, M_ta_zz,
+        M_ta_uhs_xy, M_ta_uhs_xz, M_ta_uhs_yx, M_ta_uhs_yz, M_ta_uhs_zx, M_ta_uhs_zy, M_aa_uhs_xx,
+        M_aa_uhs_xy, M_aa_uhs_xz, M_aa_t, M_aa_uhs_yz, M_aa_uhs_zz, Z_t_uhs_x, Z_t_uhs_y,
+        Z_t_uhs_z, Z_a_uhs_x, Z_a_uhs_y, Z_a_uhs_z,
+    ) = [0.0] * 26
     for leg, k in legs[0]:
         (
         inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yy,
@@ -2416,6 +2416,12 @@ def _run_dynamics(m, X, V):
         uhs_d_phi_3_t - uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_x -
             uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_x
         )
+        uhs_d_c_in_axes3_yy = (
+        uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
+            uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y) - uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y -
+            uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y -
+            uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_y
+        )
         uhs_d_c_in_axes3_yz = (
         -uhs_d_phi_3_in_axes3_yz - uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_y -
             uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_y
@@ -2439,13 +2445,7 @@ def _run_dynamics(m, X, V):
             uhs_B_3_o_in_axes3_zx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_zy*uhs_h_3_in_spec3_z
         )
         # (uhs-Q) inertia of the leg at the connection point, without the mass gathered there
-        uhs_Q_t = (
-        uhs_d_c_in_axes3_xx + uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y +
-            uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y +
-            uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_y -
-            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
-            uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y)
-        )
+        uhs_Q_t = uhs_d_c_in_axes3_xx - uhs_d_c_in_axes3_yy
         uhs_Q_t_2 = 0.5*uhs_Q_t
         uhs_Q_t_3 = uhs_d_G_in_axes3_zz + uhs_d_c_in_axes3_xx
         uhs_Q_t_4 = 0.5*uhs_Q_t_3
@@ -2466,6 +2466,11 @@ def _run_dynamics(m, X, V):
         uhs_Q_t_10 = axis_z_uhs_axes3_z*uhs_Q_t_4 - axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xz
         uhs_Q_t_11 = axis_y_uhs_axes3_x*uhs_Q_t_5 - axis_z_uhs_axes3_x*uhs_Q_t_8
         uhs_Q_xx = -2.0*uhs_Q_t_11 - uhs_d_c_in_axes3_xx
+        uhs_Q_t_12 = axis_y_uhs_axes3_y*uhs_Q_t_6 - axis_z_uhs_axes3_y*uhs_Q_t_9
+        uhs_Q_yy = -2.0*uhs_Q_t_12 - uhs_d_c_in_axes3_xx
+        uhs_Q_zz = (
+        uhs_d_G_in_axes3_zz - uhs_Q_xx - uhs_Q_yy - uhs_d_c_in_axes3_xx - uhs_d_c_in_axes3_yy
+        )
         uhs_Q_xy = (
         axis_z_uhs_axes3_x*uhs_Q_t_9 + axis_z_uhs_axes3_y*uhs_Q_t_8 - axis_y_uhs_axes3_x*uhs_Q_t_6
             - axis_y_uhs_axes3_y*uhs_Q_t_5
@@ -2474,14 +2479,10 @@ def _run_dynamics(m, X, V):
         axis_z_uhs_axes3_x*uhs_Q_t_10 + axis_z_uhs_axes3_z*uhs_Q_t_8 -
             axis_y_uhs_axes3_x*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_5
         )
-        uhs_Q_t_12 = axis_y_uhs_axes3_y*uhs_Q_t_6 - axis_z_uhs_axes3_y*uhs_Q_t_9
-        uhs_Q_yy = -2.0*uhs_Q_t_12 - uhs_d_c_in_axes3_xx
         uhs_Q_yz = (
         axis_z_uhs_axes3_y*uhs_Q_t_10 + axis_z_uhs_axes3_z*uhs_Q_t_9 -
             axis_y_uhs_axes3_y*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_6
         )
-        uhs_Q_t_13 = axis_y_uhs_axes3_z*uhs_Q_t_7 - axis_z_uhs_axes3_z*uhs_Q_t_10
-        uhs_Q_zz = -2.0*uhs_Q_t_13 - uhs_d_c_in_axes3_xx
         # (uhs-U) velocity and gravity terms of the leg force
         uhs_U_x = (
         -axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y -
@@ -2496,25 +2497,22 @@ def _run_dynamics(m, X, V):
             axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z
         )
         # (M_ta) coupling block of M
-        uhs_M_ta_t = -uhs_Q_xy*uhs_q_z
-        uhs_M_ta_t_2 = uhs_Q_xz*uhs_q_y
-        uhs_M_ta_t_3 = uhs_M_ta_t + uhs_M_ta_t_2
-        uhs_M_ta_t_4 = uhs_Q_xx*uhs_q_z - uhs_Q_xz*uhs_q_x
-        uhs_M_ta_t_5 = uhs_Q_xy*uhs_q_x - uhs_Q_xx*uhs_q_y
-        uhs_M_ta_t_6 = uhs_Q_yz*uhs_q_y - uhs_Q_yy*uhs_q_z
-        uhs_M_ta_t_7 = uhs_Q_yz*uhs_q_x
-        uhs_M_ta_t_8 = uhs_M_ta_t + uhs_M_ta_t_7
-        uhs_M_ta_t_9 = uhs_Q_yy*uhs_q_x - uhs_Q_xy*uhs_q_y
-        uhs_M_ta_t_10 = uhs_Q_zz*uhs_q_y - uhs_Q_yz*uhs_q_z
-        uhs_M_ta_t_11 = uhs_Q_xz*uhs_q_z - uhs_Q_zz*uhs_q_x
-        uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2
+        uhs_M_ta_t = uhs_Q_xz*uhs_q_x - uhs_Q_xx*uhs_q_z
+        uhs_M_ta_t_2 = uhs_Q_xy*uhs_q_x - uhs_Q_xx*uhs_q_y
+        uhs_M_ta_t_3 = uhs_Q_yz*uhs_q_y - uhs_Q_yy*uhs_q_z
+        uhs_M_ta_t_4 = uhs_Q_yz*uhs_q_x
+        uhs_M_ta_t_5 = uhs_Q_xy*uhs_q_z - uhs_M_ta_t_4
+        uhs_M_ta_t_6 = uhs_Q_yy*uhs_q_x - uhs_Q_xy*uhs_q_y
+        uhs_M_ta_t_7 = uhs_Q_zz*uhs_q_y - uhs_Q_yz*uhs_q_z
+        uhs_M_ta_t_8 = uhs_Q_xz*uhs_q_z - uhs_Q_zz*uhs_q_x
+        uhs_M_ta_t_9 = uhs_M_ta_t_4 - uhs_Q_xz*uhs_q_y
         # (M_aa) rotational block of M
-        uhs_M_aa_t = uhs_M_ta_t_10*uhs_q_y - uhs_M_ta_t_6*uhs_q_z
-        uhs_M_aa_t_2 = uhs_M_ta_t_11*uhs_q_y + uhs_M_ta_t_8*uhs_q_z
-        uhs_M_aa_t_3 = uhs_M_ta_t_12*uhs_q_y - uhs_M_ta_t_9*uhs_q_z
-        uhs_M_aa_t_4 = uhs_M_ta_t_4*uhs_q_z - uhs_M_ta_t_11*uhs_q_x
-        uhs_M_aa_t_5 = uhs_M_ta_t_5*uhs_q_z - uhs_M_ta_t_12*uhs_q_x
-        uhs_M_aa_t_6 = uhs_M_ta_t_9*uhs_q_x - uhs_M_ta_t_5*uhs_q_y
+        uhs_M_aa_t = uhs_M_ta_t_7*uhs_q_y - uhs_M_ta_t_3*uhs_q_z
+        uhs_M_aa_t_2 = uhs_M_ta_t_8*uhs_q_y - uhs_M_ta_t_5*uhs_q_z
+        uhs_M_aa_t_3 = uhs_M_ta_t_9*uhs_q_y - uhs_M_ta_t_6*uhs_q_z
+        uhs_M_aa_t_4 = uhs_M_ta_t*uhs_q_z + uhs_M_ta_t_8*uhs_q_x
+        uhs_M_aa_t_5 = uhs_M_ta_t_2*uhs_q_z - uhs_M_ta_t_9*uhs_q_x
+        uhs_M_aa_t_6 = uhs_M_ta_t_6*uhs_q_x - uhs_M_ta_t_2*uhs_q_y
         # (Z_a) rotational part of Z
         uhs_Z_a_t = uhs_U_z*uhs_q_y - uhs_U_y*uhs_q_z
         uhs_Z_a_t_2 = uhs_U_x*uhs_q_z - uhs_U_z*uhs_q_x
@@ -2536,20 +2534,19 @@ def _run_dynamics(m, X, V):
         M_tt_yz += uhs_Q_yz
         M_tt_uhs_zz += uhs_Q_zz
         # (M_ta) coupling block of M
-        M_ta_xx += uhs_M_ta_t_3
-        M_ta_uhs_xy += uhs_M_ta_t_4
-        M_ta_uhs_xz += uhs_M_ta_t_5
-        M_ta_uhs_yx += uhs_M_ta_t_6
-        M_ta_t += uhs_M_ta_t_8
-        M_ta_uhs_yz += uhs_M_ta_t_9
-        M_ta_uhs_zx += uhs_M_ta_t_10
-        M_ta_uhs_zy += uhs_M_ta_t_11
-        M_ta_zz += uhs_M_ta_t_12
+        M_ta_yy += uhs_M_ta_t_5
+        M_ta_zz += uhs_M_ta_t_9
+        M_ta_uhs_xy += -uhs_M_ta_t
+        M_ta_uhs_xz += uhs_M_ta_t_2
+        M_ta_uhs_yx += uhs_M_ta_t_3
+        M_ta_uhs_yz += uhs_M_ta_t_6
+        M_ta_uhs_zx += uhs_M_ta_t_7
+        M_ta_uhs_zy += uhs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_uhs_xx += uhs_M_aa_t
         M_aa_uhs_xy += uhs_M_aa_t_2
         M_aa_uhs_xz += uhs_M_aa_t_3
-        M_aa_uhs_yy += uhs_M_aa_t_4
+        M_aa_t += uhs_M_aa_t_4
         M_aa_uhs_yz += uhs_M_aa_t_5
         M_aa_uhs_zz += uhs_M_aa_t_6
         # (Z_t) translational part of Z
@@ -2573,6 +2570,7 @@ def _run_dynamics(m, X, V):
     M_tt_yy = M_tt_uhs_yy + m_star
     M_tt_zz = M_tt_uhs_zz + m_star
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_uhs_xy + h_star_z
     M_ta_xz = M_ta_uhs_xz - h_star_y
     M_ta_yx = M_ta_uhs_yx - h_star_z
@@ -2583,7 +2581,7 @@ def _run_dynamics(m, X, V):
     M_aa_xx = J_star_xx + M_aa_uhs_xx
     M_aa_xy = J_star_xy + M_aa_uhs_xy
     M_aa_xz = J_star_xz + M_aa_uhs_xz
-    M_aa_yy = J_star_yy + M_aa_uhs_yy
+    M_aa_yy = J_star_yy - M_aa_t
     M_aa_yz = J_star_yz + M_aa_uhs_yz
     M_aa_zz = J_star_zz + M_aa_uhs_zz
     # (Z_t) translational part of Z
@@ -2613,8 +2611,8 @@ def _run_dynamics(m, X, V):
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -M_ta_t
-    out_M[25] = -M_ta_t
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
@@ -2644,7 +2642,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 1311 mul, 945 add, 24 div, 12 sqrt, 12 trig
+# M: 1290 mul, 946 add, 24 div, 12 sqrt, 12 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -2652,7 +2650,7 @@ def _run_M(m, X):
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        J_star_t_12, J_star_t_14, J_star_t_15, h_star_in_platform_x, h_star_in_platform_y,
         h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -2705,18 +2703,17 @@ def _run_M(m, X):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
-    M_tt_uhs_xx, M_tt_xy, M_tt_xz, M_tt_uhs_yy, M_tt_yz, M_tt_uhs_zz, M_ta_xx, M_ta_uhs_xy,
-        M_ta_uhs_xz, M_ta_uhs_yx, M_ta_t, M_ta_uhs_yz, M_ta_uhs_zx, M_ta_uhs_zy, M_ta_zz,
-        M_aa_uhs_xx, M_aa_uhs_xy, M_aa_uhs_xz, M_aa_uhs_yy, M_aa_uhs_yz, M_aa_uhs_zz,
-    ) = [0.0] * 21
+    M_tt_uhs_xx, M_tt_xy, M_tt_xz, M_tt_uhs_yy, M_tt_yz, M_tt_uhs_zz, M_ta_yy, M_ta_zz,
+        M_ta_uhs_xy, M_ta_uhs_xz, M_ta_uhs_yx, M_ta_uhs_yz, M_ta_uhs_zx, M_ta_uhs_zy, M_aa_uhs_xx,
+        M_aa_uhs_xy, M_aa_uhs_xz, M_aa_t, M_aa_uhs_yz, M_aa_uhs_zz,
+    ) = [0.0] * 20
     for leg, k in legs[0]:
         (
         inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yy,
@@ -2900,18 +2897,18 @@ def _run_M(m, X):
         uhs_d_phi_3_t - uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_x -
             uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_x
         )
+        uhs_d_c_in_axes3_yy = (
+        uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
+            uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y) - uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y -
+            uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y -
+            uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_y
+        )
         uhs_d_c_in_axes3_yz = (
         -uhs_d_phi_3_in_axes3_yz - uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_y -
             uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_y
         )
         # (uhs-Q) inertia of the leg at the connection point, without the mass gathered there
-        uhs_Q_t = (
-        uhs_d_c_in_axes3_xx + uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y +
-            uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y +
-            uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_y -
-            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
-            uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y)
-        )
+        uhs_Q_t = uhs_d_c_in_axes3_xx - uhs_d_c_in_axes3_yy
         uhs_Q_t_2 = 0.5*uhs_Q_t
         uhs_Q_t_3 = uhs_d_G_in_axes3_zz + uhs_d_c_in_axes3_xx
         uhs_Q_t_4 = 0.5*uhs_Q_t_3
@@ -2932,6 +2929,11 @@ def _run_M(m, X):
         uhs_Q_t_10 = axis_z_uhs_axes3_z*uhs_Q_t_4 - axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xz
         uhs_Q_t_11 = axis_y_uhs_axes3_x*uhs_Q_t_5 - axis_z_uhs_axes3_x*uhs_Q_t_8
         uhs_Q_xx = -2.0*uhs_Q_t_11 - uhs_d_c_in_axes3_xx
+        uhs_Q_t_12 = axis_y_uhs_axes3_y*uhs_Q_t_6 - axis_z_uhs_axes3_y*uhs_Q_t_9
+        uhs_Q_yy = -2.0*uhs_Q_t_12 - uhs_d_c_in_axes3_xx
+        uhs_Q_zz = (
+        uhs_d_G_in_axes3_zz - uhs_Q_xx - uhs_Q_yy - uhs_d_c_in_axes3_xx - uhs_d_c_in_axes3_yy
+        )
         uhs_Q_xy = (
         axis_z_uhs_axes3_x*uhs_Q_t_9 + axis_z_uhs_axes3_y*uhs_Q_t_8 - axis_y_uhs_axes3_x*uhs_Q_t_6
             - axis_y_uhs_axes3_y*uhs_Q_t_5
@@ -2940,34 +2942,27 @@ def _run_M(m, X):
         axis_z_uhs_axes3_x*uhs_Q_t_10 + axis_z_uhs_axes3_z*uhs_Q_t_8 -
             axis_y_uhs_axes3_x*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_5
         )
-        uhs_Q_t_12 = axis_y_uhs_axes3_y*uhs_Q_t_6 - axis_z_uhs_axes3_y*uhs_Q_t_9
-        uhs_Q_yy = -2.0*uhs_Q_t_12 - uhs_d_c_in_axes3_xx
         uhs_Q_yz = (
         axis_z_uhs_axes3_y*uhs_Q_t_10 + axis_z_uhs_axes3_z*uhs_Q_t_9 -
             axis_y_uhs_axes3_y*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_6
         )
-        uhs_Q_t_13 = axis_y_uhs_axes3_z*uhs_Q_t_7 - axis_z_uhs_axes3_z*uhs_Q_t_10
-        uhs_Q_zz = -2.0*uhs_Q_t_13 - uhs_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        uhs_M_ta_t = -uhs_Q_xy*uhs_q_z
-        uhs_M_ta_t_2 = uhs_Q_xz*uhs_q_y
-        uhs_M_ta_t_3 = uhs_M_ta_t + uhs_M_ta_t_2
-        uhs_M_ta_t_4 = uhs_Q_xx*uhs_q_z - uhs_Q_xz*uhs_q_x
-        uhs_M_ta_t_5 = uhs_Q_xy*uhs_q_x - uhs_Q_xx*uhs_q_y
-        uhs_M_ta_t_6 = uhs_Q_yz*uhs_q_y - uhs_Q_yy*uhs_q_z
-        uhs_M_ta_t_7 = uhs_Q_yz*uhs_q_x
-        uhs_M_ta_t_8 = uhs_M_ta_t + uhs_M_ta_t_7
-        uhs_M_ta_t_9 = uhs_Q_yy*uhs_q_x - uhs_Q_xy*uhs_q_y
-        uhs_M_ta_t_10 = uhs_Q_zz*uhs_q_y - uhs_Q_yz*uhs_q_z
-        uhs_M_ta_t_11 = uhs_Q_xz*uhs_q_z - uhs_Q_zz*uhs_q_x
-        uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2
+        uhs_M_ta_t = uhs_Q_xz*uhs_q_x - uhs_Q_xx*uhs_q_z
+        uhs_M_ta_t_2 = uhs_Q_xy*uhs_q_x - uhs_Q_xx*uhs_q_y
+        uhs_M_ta_t_3 = uhs_Q_yz*uhs_q_y - uhs_Q_yy*uhs_q_z
+        uhs_M_ta_t_4 = uhs_Q_yz*uhs_q_x
+        uhs_M_ta_t_5 = uhs_Q_xy*uhs_q_z - uhs_M_ta_t_4
+        uhs_M_ta_t_6 = uhs_Q_yy*uhs_q_x - uhs_Q_xy*uhs_q_y
+        uhs_M_ta_t_7 = uhs_Q_zz*uhs_q_y - uhs_Q_yz*uhs_q_z
+        uhs_M_ta_t_8 = uhs_Q_xz*uhs_q_z - uhs_Q_zz*uhs_q_x
+        uhs_M_ta_t_9 = uhs_M_ta_t_4 - uhs_Q_xz*uhs_q_y
         # (M_aa) rotational block of M
-        uhs_M_aa_t = uhs_M_ta_t_10*uhs_q_y - uhs_M_ta_t_6*uhs_q_z
-        uhs_M_aa_t_2 = uhs_M_ta_t_11*uhs_q_y + uhs_M_ta_t_8*uhs_q_z
-        uhs_M_aa_t_3 = uhs_M_ta_t_12*uhs_q_y - uhs_M_ta_t_9*uhs_q_z
-        uhs_M_aa_t_4 = uhs_M_ta_t_4*uhs_q_z - uhs_M_ta_t_11*uhs_q_x
-        uhs_M_aa_t_5 = uhs_M_ta_t_5*uhs_q_z - uhs_M_ta_t_12*uhs_q_x
-        uhs_M_aa_t_6 = uhs_M_ta_t_9*uhs_q_x - uhs_M_ta_t_5*uhs_q_y
+        uhs_M_aa_t = uhs_M_ta_t_7*uhs_q_y - uhs_M_ta_t_3*uhs_q_z
+        uhs_M_aa_t_2 = uhs_M_ta_t_8*uhs_q_y - uhs_M_ta_t_5*uhs_q_z
+        uhs_M_aa_t_3 = uhs_M_ta_t_9*uhs_q_y - uhs_M_ta_t_6*uhs_q_z
+        uhs_M_aa_t_4 = uhs_M_ta_t*uhs_q_z + uhs_M_ta_t_8*uhs_q_x
+        uhs_M_aa_t_5 = uhs_M_ta_t_2*uhs_q_z - uhs_M_ta_t_9*uhs_q_x
+        uhs_M_aa_t_6 = uhs_M_ta_t_6*uhs_q_x - uhs_M_ta_t_2*uhs_q_y
         ok = (
         ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
             _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
@@ -2981,20 +2976,19 @@ def _run_M(m, X):
         M_tt_yz += uhs_Q_yz
         M_tt_uhs_zz += uhs_Q_zz
         # (M_ta) coupling block of M
-        M_ta_xx += uhs_M_ta_t_3
-        M_ta_uhs_xy += uhs_M_ta_t_4
-        M_ta_uhs_xz += uhs_M_ta_t_5
-        M_ta_uhs_yx += uhs_M_ta_t_6
-        M_ta_t += uhs_M_ta_t_8
-        M_ta_uhs_yz += uhs_M_ta_t_9
-        M_ta_uhs_zx += uhs_M_ta_t_10
-        M_ta_uhs_zy += uhs_M_ta_t_11
-        M_ta_zz += uhs_M_ta_t_12
+        M_ta_yy += uhs_M_ta_t_5
+        M_ta_zz += uhs_M_ta_t_9
+        M_ta_uhs_xy += -uhs_M_ta_t
+        M_ta_uhs_xz += uhs_M_ta_t_2
+        M_ta_uhs_yx += uhs_M_ta_t_3
+        M_ta_uhs_yz += uhs_M_ta_t_6
+        M_ta_uhs_zx += uhs_M_ta_t_7
+        M_ta_uhs_zy += uhs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_uhs_xx += uhs_M_aa_t
         M_aa_uhs_xy += uhs_M_aa_t_2
         M_aa_uhs_xz += uhs_M_aa_t_3
-        M_aa_uhs_yy += uhs_M_aa_t_4
+        M_aa_t += uhs_M_aa_t_4
         M_aa_uhs_yz += uhs_M_aa_t_5
         M_aa_uhs_zz += uhs_M_aa_t_6
     # (M_tt) translational block of M
@@ -3002,6 +2996,7 @@ def _run_M(m, X):
     M_tt_yy = M_tt_uhs_yy + m_star
     M_tt_zz = M_tt_uhs_zz + m_star
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_uhs_xy + h_star_z
     M_ta_xz = M_ta_uhs_xz - h_star_y
     M_ta_yx = M_ta_uhs_yx - h_star_z
@@ -3012,7 +3007,7 @@ def _run_M(m, X):
     M_aa_xx = J_star_xx + M_aa_uhs_xx
     M_aa_xy = J_star_xy + M_aa_uhs_xy
     M_aa_xz = J_star_xz + M_aa_uhs_xz
-    M_aa_yy = J_star_yy + M_aa_uhs_yy
+    M_aa_yy = J_star_yy - M_aa_t
     M_aa_yz = J_star_yz + M_aa_uhs_yz
     M_aa_zz = J_star_zz + M_aa_uhs_zz
     # (M_tt) translational block of M
@@ -3034,8 +3029,8 @@ def _run_M(m, X):
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -M_ta_t
-    out_M[25] = -M_ta_t
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
@@ -3057,7 +3052,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1572 mul, 1194 add, 24 div, 12 sqrt, 12 trig
+# Z: 1569 mul, 1194 add, 24 div, 12 sqrt, 12 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -3065,8 +3060,8 @@ def _run_Z(m, X, V):
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3131,13 +3126,12 @@ def _run_Z(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3640,7 +3634,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1659 mul, 1269 add, 24 div, 12 sqrt, 12 trig
+# required: 1650 mul, 1263 add, 24 div, 12 sqrt, 12 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3740,9 +3734,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
@@ -3766,27 +3757,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_uhs_x, R_a_uhs_y, R_a_uhs_z = [0.0] * 6
     for leg, k in legs[0]:
         (

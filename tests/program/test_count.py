@@ -171,18 +171,18 @@ CEILINGS = {
     "planar_4rpr_free": (520, 411),
     "planar_mixed": (556, 421),
     "planar_redundant": (717, 551),
-    "quadrupod": (3816, 2400),
+    "quadrupod": (3080, 2048),
     "sixbar": (454, 365),
     "spherical_3ups": (1365, 981),
     "stewart": (2737, 1911),
     "stewart_7ups": (3168, 2203),
     "stewart_7ups_free": (3187, 2200),
     "stewart_sps": (3727, 2367),
-    "tricept": (3385, 2108),
+    "tricept": (2649, 1756),
     "tripod_3prs": (1234, 858),
     "tripod_3rps": (1006, 711),
     "tripod_3ups": (870, 687),
-    "tripod_3upu": (2727, 1656),
+    "tripod_3upu": (1986, 1407),
 }
 """Operations of `dynamics` and of `required`, roots and divisions included."""
 
